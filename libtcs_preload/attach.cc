@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -45,10 +46,12 @@ struct Received {
 };
 
 Received Exchange(int socket, shm::AttachWants wants) {
-  shm::AttachHello hello{shm::kMagic, shm::kVersion, 0, 0, 0, wants, 0};
+  shm::AttachHello hello{shm::kMagic, shm::kVersion, 0, 0, 0, wants, 0, 0};
   hello.pid = static_cast<std::int32_t>(RawSyscall(SYS_getpid));
   hello.tid = static_cast<std::int32_t>(RawSyscall(SYS_gettid));
   hello.parent_pid = static_cast<std::int32_t>(RawSyscall(SYS_getppid));
+  // Up to glibc 2.42 it holds the thread's id, from 2.43 on a state.
+  RawSyscall(SYS_prctl, PR_GET_TID_ADDRESS, Arg(&hello.end_word), 0, 0, 0);
   RawSocketCall(SYS_sendto, socket, Arg(&hello), sizeof hello, MSG_NOSIGNAL, 0, 0);
 
   Received received;

@@ -1,5 +1,6 @@
 // Asking about a file by its name: a device of the robot's is there, under the name that it has in
 // the scenario. All other names are the kernel's business.
+#include <errno.h>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -22,7 +23,38 @@ int StatAt(int folder, const char* path, void* status, int flags) {
       ToErrno(RawSyscall(SYS_newfstatat, folder, Arg(FileOf(path)), Arg(status), flags)));
 }
 
+// What programs call in their place that were built with glibc up to 2.32, whose header has such a
+// call made of each: it says first which structure the program knows.
+int OldStatAt(int version, int folder, const char* path, void* status, int flags) {
+  constexpr int kKernels = 0, kLibrarys = 1;  // the same one
+  if (version != kKernels && version != kLibrarys) return Fail(EINVAL);
+  return StatAt(folder, path, status, flags);
+}
+
 }  // namespace
+
+extern "C" {
+TCS_EXPORT int __xstat(int version, const char* path, struct stat* status) noexcept {
+  return OldStatAt(version, AT_FDCWD, path, status, 0);
+}
+TCS_EXPORT int __xstat64(int version, const char* path, struct stat64* status) noexcept {
+  return OldStatAt(version, AT_FDCWD, path, status, 0);
+}
+TCS_EXPORT int __lxstat(int version, const char* path, struct stat* status) noexcept {
+  return OldStatAt(version, AT_FDCWD, path, status, AT_SYMLINK_NOFOLLOW);
+}
+TCS_EXPORT int __lxstat64(int version, const char* path, struct stat64* status) noexcept {
+  return OldStatAt(version, AT_FDCWD, path, status, AT_SYMLINK_NOFOLLOW);
+}
+TCS_EXPORT int __fxstatat(int version, int folder, const char* path, struct stat* status,
+                          int flags) noexcept {
+  return OldStatAt(version, folder, path, status, flags);
+}
+TCS_EXPORT int __fxstatat64(int version, int folder, const char* path, struct stat64* status,
+                            int flags) noexcept {
+  return OldStatAt(version, folder, path, status, flags);
+}
+}
 
 TCS_EXPORT int stat(const char* path, struct stat* status) noexcept {
   return StatAt(AT_FDCWD, path, status, 0);

@@ -12,11 +12,13 @@
 
 namespace tcs::preload {
 
-// -1 if the thread has ended. The C library tells the number only as part of the clock's.
+// -1 if the thread has ended. The C library tells the number only as part of the clock's; from
+// glibc 2.43 on it is 0 there when a thread is about to end.
 inline pid_t TidOf(pthread_t thread) {
   clockid_t clock;
   if (TCS_REAL(pthread_getcpuclockid)(thread, &clock) != 0) return -1;
-  return shm::ClockOf(clock).owner;
+  const pid_t tid = shm::ClockOf(clock).owner;
+  return tid > 0 ? tid : -1;
 }
 
 // The first 64 cores of a set; bit 0 is core 0.

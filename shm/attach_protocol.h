@@ -32,8 +32,11 @@ struct AttachHello {
   std::int32_t parent_pid;
   AttachWants wants;
   std::uint32_t reserved;
+  // The word of the C library's that the kernel clears when this thread has ended, and where it
+  // then wakes a thread that joins; 0: the kernel does not tell.
+  std::uint64_t end_word;
 };
-static_assert(sizeof(AttachHello) == 32);
+static_assert(sizeof(AttachHello) == 40);
 
 inline constexpr int kMostAttachFds = 4;
 

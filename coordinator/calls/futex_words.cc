@@ -59,11 +59,17 @@ std::int64_t FutexWords::Deadline(const Task& task, const TrappedCall& call, int
   return 0;
 }
 
-// The thread has said that it ends, but the kernel may not be through with it yet.
-bool FutexWords::IsEnding(const Task& joiner, pid_t tid) const {
-  return std::any_of(run_.table.tasks().begin(), run_.table.tasks().end(), [&](const Task& task) {
-    return task.tid == tid && task.process == joiner.process && task.state == TaskState::kDead;
-  });
+const Task* FutexWords::EndsAt(const Process& process, std::uint64_t address,
+                               std::uint32_t value) const {
+  const auto named = static_cast<pid_t>(value & FUTEX_TID_MASK);
+  const Task* found = nullptr;
+  for (const Task& task : run_.table.tasks()) {
+    if (task.process != &process) continue;
+    if (task.end_word == address) return &task;
+    const bool lives = task.state != TaskState::kDead;
+    if (task.tid == named && (found == nullptr || lives)) found = &task;
+  }
+  return found;
 }
 
 std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) {
@@ -82,11 +88,12 @@ std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) 
   }
   // Nobody has run since the caller looked: this is the check that the kernel makes under its lock.
   if (value != static_cast<std::uint32_t>(call.args[2])) return -EAGAIN;
-  if (const pid_t joined = static_cast<pid_t>(value & FUTEX_TID_MASK); IsEnding(task, joined)) {
-    // A join: the kernel clears the word when the thread has gone, which it is about to be. If it
-    // has gone and the word is still the same, that is only a number like the thread's.
+  const Task* joined = EndsAt(*task.process, call.args[0], value);
+  if (joined != nullptr && joined->state == TaskState::kDead) {
+    // A join: the thread has said that it ends, and the kernel clears the word when it has gone. If
+    // it has gone and the word is still the same, that is only a number like the thread's.
     for (int turn = 0;; ++turn) {
-      const char state = ThreadState(joined);
+      const char state = ThreadState(joined->tid);
       if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
       if (value != static_cast<std::uint32_t>(call.args[2])) return -EAGAIN;
       if (state == 'X' || state == 'Z' || turn == kEndTurns) break;
@@ -94,12 +101,23 @@ std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) 
     }
   }
   table_.Wait(task.order, KeyFor(task, call, call.args[0]), command == FUTEX_WAIT ? kAnyBit : bits);
-  Enter(task, {.names_tid = static_cast<pid_t>(value & FUTEX_TID_MASK)}, deadline);
+  // The owner of a robust lock that processes share may be in another one.
+  if (joined == nullptr) joined = run_.table.Living(static_cast<pid_t>(value & FUTEX_TID_MASK));
+  const pid_t names = joined == nullptr ? 0 : joined->tid;
+  Enter(task, {.names_tid = names, .address = call.args[0]}, deadline);
   return 0;
 }
 
 void FutexWords::Enter(Task& task, awaited::Futex wait, VirtualTime deadline) {
   waker_.Wait(task, {wait, deadline, true});
+}
+
+// The joiner finds the word as it was: whether the kernel has cleared it is seen when it waits
+// again.
+void FutexWords::WakeAtEndOf(const Task& ended, Moment moment) {
+  constexpr TrappedCall kKernelsWake{.args = {0, FUTEX_WAKE}};
+  if (ended.end_word == 0 || ended.process->dead) return;
+  Wake(WokenKeyFor(*ended.process, kKernelsWake, ended.end_word), 1, kAnyBit, moment);
 }
 
 std::int64_t FutexWords::WaitForAny(Task& task, const TrappedCall& call) {

@@ -32,6 +32,9 @@ class FutexWords {
   // Wakes at most so many, one of whose bits is in `bits`. Returns how many.
   std::int64_t Wake(const FutexKey& key, std::int64_t most, std::uint32_t bits, Moment moment);
 
+  // The wake that the kernel makes at a thread's end, at the word that it clears then.
+  void WakeAtEndOf(const Task& ended, Moment moment);
+
   // Null: no thread waits there.
   Task* MostUrgent(const FutexKey& key, std::uint32_t bits);
   // From an absolute or relative timeout, if the call has one, to a deadline on its virtual CPU.
@@ -48,7 +51,10 @@ class FutexWords {
   FutexTable& table() { return table_; }
 
  private:
-  bool IsEnding(const Task& joiner, pid_t tid) const;
+  // The thread of the process at whose end the kernel changes this word; null: none is known. That
+  // is the word which the kernel clears then, or one that holds the thread's id: a robust lock, or
+  // the former where the kernel does not tell its address.
+  const Task* EndsAt(const Process& process, std::uint64_t address, std::uint32_t value) const;
 
   RunState& run_;
   Waker& waker_;

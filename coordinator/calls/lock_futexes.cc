@@ -79,6 +79,7 @@ std::int64_t LockFutexes::Unlock(Task& task, const TrappedCall& call) {
 }
 
 void LockFutexes::WakeThoseWaitingFor(Task& ended, Moment moment) {
+  words_.WakeAtEndOf(ended, moment);
   for (Task& task : run_.table.tasks()) {
     const auto* wait = task.Awaits<awaited::Futex>();
     if (wait == nullptr) continue;

@@ -112,6 +112,9 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
     case SYS_sched_rr_get_interval:
       task.trap_result = parts_.scheduling.Call(task, call);
       break;
+    case SYS_getcpu:
+      task.trap_result = RawScheduling::CoreOf(task, call);
+      break;
     case SYS_timer_create:
     case SYS_timer_settime:
     case SYS_timer_gettime:

@@ -117,6 +117,12 @@ std::int64_t RawScheduling::GetScheduling(Task& task, Task& of, const TrappedCal
   }
 }
 
+std::int64_t RawScheduling::CoreOf(const Task& task, const TrappedCall& call) {
+  const std::uint32_t core = task.cpu == nullptr ? 0 : task.cpu->core, node = 0;
+  if (call.args[0] != 0 && !Write(task, call.args[0], core)) return -EFAULT;
+  return call.args[1] == 0 || Write(task, call.args[1], node) ? 0 : -EFAULT;
+}
+
 std::int64_t RawScheduling::Call(Task& task, const TrappedCall& call) {
   const auto tid = static_cast<pid_t>(call.args[0]);
   const bool has_pointer =

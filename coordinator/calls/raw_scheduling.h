@@ -18,6 +18,8 @@ class RawScheduling {
 
   // What the call returns: negative for an errno.
   std::int64_t Call(Task& task, const TrappedCall& call);
+  // The same of getcpu: the robot's core that the thread is on.
+  static std::int64_t CoreOf(const Task& task, const TrappedCall& call);
 
  private:
   std::int64_t SetScheduling(Task& task, Task& of, const TrappedCall& call);

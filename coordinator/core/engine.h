@@ -64,6 +64,7 @@
 #include "coordinator/os/real_time_facts.h"
 #include "coordinator/os/stop_request.h"
 #include "coordinator/policy/temporal_consistency.h"
+#include "coordinator/processes/bare_programs.h"
 #include "coordinator/processes/births.h"
 #include "coordinator/processes/deaths.h"
 #include "coordinator/processes/expulsion.h"
@@ -280,6 +281,7 @@ class Engine {
   KernelObjectWaits objects_{run_, waker_, [this](Moment moment) {
                                if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.at);
                              }};
+  BarePrograms bare_programs_{run_};
   GuardedCalls guard_;
 
   // Who takes part: how threads and processes come, and how they go.

@@ -45,14 +45,6 @@ void KeepFreedMemory() {
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
 }
 
-// The sentence for a kernel that lacks what runs without levels need.
-std::string WhyNoGates(const RealTimeFacts& facts) {
-  constexpr char kNeeds[] = ", and runs without it need Linux 5.19 or newer";
-  if (facts.error == 0) return std::string("pidfd_getfd is refused here") + kNeeds;
-  return "SCHED_FIFO is not permitted here (" + WhyNoRealTime(facts) + ")" + kNeeds +
-         "; to have it, " + MendOfRealTime(facts);
-}
-
 }  // namespace
 
 std::string Engine::Prepare() {
@@ -61,7 +53,6 @@ std::string Engine::Prepare() {
   state_link_.Does(Doing::kPrepares, __rdtsc());
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
-  if (run_.gates_only && !TrapsHoldSignals()) return WhyNoGates(real_time_);
   if (std::string error = network_.Open(run_.scenario); !error.empty()) return error;
   const auto make_at = [this](const std::string& address, const std::function<void()>& make) {
     network_.MakeAt(address, make);

@@ -57,6 +57,11 @@ Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
     guard_.LetThrough(*call);
     return {};
   }
+  if (BeginsProgram(*call)) {
+    bare_programs_.Begins(ProcessOfThread(call->tid));
+    guard_.LetThrough(*call);
+    return {};
+  }
   const bool waits = by != nullptr && (by->slot >= 0 || call->number == SYS_futex);
   if (!waits || !PutOff(by, take)) return take(moment);
   by->is_call_put_off = true;

@@ -5,10 +5,12 @@
 #include <gnu/libc-version.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -34,9 +36,15 @@ std::string ReadFile(const char* path) {
   return text.str();
 }
 
+// As the shim asks it.
+bool TellsEndWords() {
+  std::uint64_t address = 0;
+  return prctl(PR_GET_TID_ADDRESS, &address, 0, 0, 0) == 0;
+}
+
 Finding TryDescriptors() {
   const pid_t child = fork();
-  if (child < 0) return JudgeDescriptors(errno, errno, TrapsHoldSignals());
+  if (child < 0) return JudgeDescriptors(errno, errno);
   if (child == 0) {
     alarm(5);
     for (;;) pause();
@@ -46,7 +54,7 @@ Finding TryDescriptors() {
   const int descriptor_error = fd ? 0 : errno, memory_error = WhyNoLooksInto(child);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  return JudgeDescriptors(descriptor_error, memory_error, TrapsHoldSignals());
+  return JudgeDescriptors(descriptor_error, memory_error);
 }
 
 Finding TryShim(const std::string& path) {
@@ -114,7 +122,7 @@ const char* Colour(Verdict verdict) {
 
 std::vector<Finding> Examine(const std::string& preload_library) {
   return {
-      JudgeRealTime(AskForRealTime(), TrapsHoldSignals()),
+      JudgeRealTime(AskForRealTime()),
       JudgeThrottling(ReadFile("/proc/sys/kernel/sched_rt_runtime_us"),
                       ReadFile("/proc/sys/kernel/sched_rt_period_us"),
                       ReadFile("/proc/sys/kernel/osrelease")),
@@ -125,7 +133,7 @@ std::vector<Finding> Examine(const std::string& preload_library) {
       TryDescriptors(),
       JudgeLayout(WhyNoFixedLayout()),
       JudgeNetworks(WhyNoComputer(), !MayMakeNamespaces()),
-      JudgeLibc(gnu_get_libc_version()),
+      JudgeLibc(gnu_get_libc_version(), TellsEndWords()),
       TryShim(preload_library),
       JudgeSteal(ReadFile("/proc/stat")),
   };

@@ -39,7 +39,7 @@ bool HasWord(const std::string& text, const std::string& word) {
 
 }  // namespace
 
-Finding JudgeRealTime(const RealTimeFacts& facts, bool has_gates) {
+Finding JudgeRealTime(const RealTimeFacts& facts) {
   constexpr char kName[] = "real-time priority";
   if (facts.error == 0) {
     return {kName, Verdict::kOk,
@@ -50,10 +50,6 @@ Finding JudgeRealTime(const RealTimeFacts& facts, bool has_gates) {
   }
   const std::string refused =
       fmt::format("SCHED_FIFO {} is refused ({})", kRealTimeNeeded, WhyNoRealTime(facts));
-  if (!has_gates) {
-    return {kName, Verdict::kMissing, refused + ", and runs without it need Linux 5.19",
-            MendOfRealTime(facts)};
-  }
   return {
       kName, Verdict::kWarning,
       refused + ": gates and a signal keep the threads of a run apart, with the same results",
@@ -124,7 +120,7 @@ Finding JudgeCpu(int cpu, int allowed, const std::string& isolated) {
           "give it a second processor, so that your terminal goes on"};
 }
 
-Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates) {
+Finding JudgeDescriptors(int descriptor_error, int memory_error) {
   constexpr char kName[] = "descriptors of clients";
   if (memory_error != 0) {
     return {kName, Verdict::kMissing,
@@ -142,9 +138,6 @@ Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates)
   const std::string refused =
       fmt::format("pidfd_getfd is refused ({})", strerror(descriptor_error));
   const std::string how = "docker: --cap-add SYS_PTRACE, or a seccomp profile that allows it";
-  if (!has_gates) {
-    return {kName, Verdict::kMissing, refused + ", and to run without it takes Linux 5.19", how};
-  }
   return {kName, Verdict::kWarning,
           refused +
               ": a process beside each program hands them over, and SCHED_FIFO is not used, "
@@ -178,14 +171,23 @@ Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool in_user_nam
           "only scenarios with `network` take it: " + why_not->Mend()};
 }
 
-Finding JudgeLibc(const std::string& version) {
+Finding JudgeLibc(const std::string& version, bool tells_end_words) {
+  constexpr char kName[] = "C library";
   int major = 0, minor = 0;
   std::sscanf(version.c_str(), "%d.%d", &major, &minor);
-  if (major > 2 || (major == 2 && minor >= 36)) {
-    return {"C library", Verdict::kOk, "glibc " + version, ""};
+  const auto is_since = [&](int of_two) { return major > 2 || (major == 2 && minor >= of_two); };
+  if (is_since(43) && !tells_end_words) {
+    return {kName, Verdict::kMissing,
+            "glibc " + version +
+                ", with which threads are joined at words that this kernel does not tell "
+                "(PR_GET_TID_ADDRESS), so joins may wait for ever",
+            "boot a kernel with CONFIG_CHECKPOINT_RESTORE, or run in a container with an older C "
+            "library"};
   }
-  return {"C library", Verdict::kWarning, "glibc " + version,
-          "tcs is made and tested with glibc 2.36 and 2.41 (Debian 12, 13)"};
+  if (is_since(35)) return {kName, Verdict::kOk, "glibc " + version, ""};
+  return {kName, Verdict::kWarning, "glibc " + version,
+          "tcs is made for glibc 2.35 and newer, and tested with 2.36, 2.41 and 2.43 (Debian 12, "
+          "13 and sid)"};
 }
 
 Finding JudgeShim(const std::string& path, int wait_status, const std::string& said) {

@@ -1,5 +1,6 @@
 #include "coordinator/os/trap.h"
 
+#include <asm/prctl.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/audit.h>
@@ -48,7 +49,7 @@ constexpr std::uint32_t kTrapped[] = {
     // The scheduler: the host's must not hear of it.
     SYS_sched_yield, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr,
     SYS_sched_setaffinity, SYS_sched_getaffinity, SYS_sched_getscheduler, SYS_sched_getparam,
-    SYS_sched_getattr, SYS_sched_rr_get_interval,
+    SYS_sched_getattr, SYS_sched_rr_get_interval, SYS_getcpu,
     // The end of a thread.
     SYS_exit,
     // Refused, so that programs take the calls that are known here.
@@ -85,6 +86,10 @@ sock_filter JumpIfEqual(std::uint32_t k, std::size_t yes, std::size_t no) {
 // host's memory in /sys, which it looks at only if the kernel knows this call.
 constexpr std::uint32_t kNuma = SYS_get_mempolicy;
 
+// With it a program reads the host's processor from its own memory, where the kernel writes it.
+// Without it the C library takes the next way, getcpu, and so do others.
+constexpr std::uint32_t kRseq = SYS_rseq;
+
 // The upper half of an argument.
 sock_filter LoadUpper(std::size_t argument) {
   return Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument +
@@ -104,8 +109,15 @@ std::vector<sock_filter> NativeProgram(const Numbers& numbers) {
   trapped.insert(trapped.end(), numbers.unmarked.begin(), numbers.unmarked.end());
   const std::size_t count = trapped.size();
   std::vector<sock_filter> program{
-      JumpIfEqual(kNuma, 0, 1),
+      JumpIfEqual(kNuma, 1, 0),
+      JumpIfEqual(kRseq, 0, 1),
       Return(SECCOMP_RET_ERRNO | ENOSYS),
+      // Of the first thread only: others are made with it.
+      JumpIfEqual(SYS_arch_prctl, 0, 4),
+      LoadArgument(0),
+      JumpIfEqual(ARCH_SET_FS, 0, 1),
+      trap,
+      allow,
       JumpIfEqual(SYS_futex, 0, 6),
       LoadArgument(1),
       // The shim waits at its gate with this operation, which has no use for its last argument.
@@ -187,8 +199,8 @@ bool TrapsHoldSignals() {
 }
 
 int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
-  // Without a real-time priority nothing else keeps a thread in its call when a signal comes; and
-  // it may be sent one to stop.
+  // Without a real-time priority nothing else keeps a thread in its call when a signal comes, if
+  // the kernel can; and it may be sent one to stop.
   const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
   Numbers numbers{{std::begin(kTrapped), std::end(kTrapped)}, {}};
   if (too.draws) numbers.others.push_back(SYS_getrandom);
@@ -203,7 +215,7 @@ int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
         syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER,
                 SECCOMP_FILTER_FLAG_NEW_LISTENER | SECCOMP_FILTER_FLAG_SPEC_ALLOW | more, &filter));
   };
-  const unsigned more = has_level ? 0 : kHoldsSignals;
+  const unsigned more = has_level || !TrapsHoldSignals() ? 0 : kHoldsSignals;
   const int listener = install(more);
   if (listener >= 0 || errno != EACCES) return listener;
   // Without rights over others a filter must not outlive a set-uid exec.
@@ -219,6 +231,8 @@ bool IsExecution(const TrappedCall& call) {
 bool SendsSignal(const TrappedCall& call) {
   return std::find(std::begin(kSignals), std::end(kSignals), call.number) != std::end(kSignals);
 }
+
+bool BeginsProgram(const TrappedCall& call) { return call.number == SYS_arch_prctl; }
 
 bool IsEnd(const TrappedCall& call) { return static_cast<std::uint32_t>(call.number) == kEnd; }
 

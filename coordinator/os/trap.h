@@ -41,12 +41,16 @@ struct TrappedToo {
 // processes (protection.h). The descriptor at which the calls arrive; -1: errno is set.
 int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too = {});
 
-// A signal can be kept from a thread in a trapped call until that is answered (Linux 5.19).
+// A signal can be kept from a thread in a trapped call until that is answered (Linux 5.19). Where
+// it cannot, a handler runs while the call waits, and the thread makes the call again.
 bool TrapsHoldSignals();
 
 // It executes another program. Trapped only where threads may be sent a signal by the coordinator,
 // which the other program would have no handler for.
 bool IsExecution(const TrappedCall& call);
+
+// A program that was executed sets up its first thread, as each does, before it computes anything.
+bool BeginsProgram(const TrappedCall& call);
 
 // It sends a signal, to others or to itself.
 bool SendsSignal(const TrappedCall& call);

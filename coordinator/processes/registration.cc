@@ -113,6 +113,7 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
     Refuse(connection, "there is no room for more threads");
     return true;
   }
+  TakeEndWord(task, hello.end_word);
   task.slot_memory = &process.link->SlotAt(task.slot);
   task.metered.page = &task.slot_memory->clock;
   if (!run_.turn.IsOf(task)) parts_.cpu.active().HoldUnknown(task);
@@ -139,6 +140,18 @@ Task& Registration::TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment
   const pid_t parent_pid = ParentOf(pid);
   const Process* parent = run_.table.LivingProcess(parent_pid);
   return parts_.births.AddChild(pid, parent_pid, parent != nullptr ? *parent : client, moment.at);
+}
+
+// The C library has taken back what an ended thread had there. Who waits there already, joins.
+void Registration::TakeEndWord(Task& task, std::uint64_t address) {
+  if (address == 0) return;
+  for (Task& other : run_.table.tasks()) {
+    if (other.process != task.process) continue;
+    if (other.end_word == address) other.end_word = 0;
+    auto* wait = other.Awaits<awaited::Futex>();
+    if (wait != nullptr && wait->address == address) wait->names_tid = task.tid;
+  }
+  task.end_word = address;
 }
 
 void Registration::GiveDdsArea(int connection, pid_t pid) {

@@ -72,6 +72,7 @@ class Registration {
   const char* WhyNot(const shm::AttachHello& hello, Moment moment);
   bool TakePlace(int connection, const shm::AttachHello& hello, Process& client, Moment moment);
   Task& TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment);
+  void TakeEndWord(Task& task, std::uint64_t address);
   void GiveDdsArea(int connection, pid_t pid);
   void Connect(Process& process);
   UniqueFd GivePorter(Process& process);

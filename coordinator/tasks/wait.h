@@ -67,8 +67,9 @@ struct Child {
 
 // A word in memory, at which FutexTable knows it.
 struct Futex {
-  // What the word says, if it says whom: the thread that a join waits for, a robust lock's owner.
+  // The thread that a join waits for, a robust lock's owner; 0: neither.
   pid_t names_tid = 0;
+  std::uint64_t address = 0;  // of the word of such a wait, in the thread's memory
   // Of a lock that lends priority:
   int owner = kNobody;
   std::uint64_t lock_address = 0;  // in the thread's memory

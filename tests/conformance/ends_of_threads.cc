@@ -1,7 +1,12 @@
 // Threads that end without a word of their own: the first one by pthread_exit, others because one
 // of them executes another program.
+#include <linux/futex.h>
 #include <pthread.h>
+#include <sched.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
+
+#include <atomic>
 
 #include "tests/conformance/conformance.h"
 
@@ -20,10 +25,27 @@ void* ExecuteSleep(void*) {
   return nullptr;
 }
 
+// The kernel clears it when the child's first thread has ended. It holds a state, as glibc has it
+// from 2.43 on, and no thread's id.
+constexpr std::uint32_t kJoinable = 2;
+std::atomic<std::uint32_t> g_state{kJoinable};
+
+pid_t WithState() {
+  return static_cast<pid_t>(
+      syscall(SYS_clone, SIGCHLD | CLONE_CHILD_CLEARTID, nullptr, nullptr, &g_state, nullptr));
+}
+
+void* AwaitState(void*) {
+  while (g_state == kJoinable) {
+    syscall(SYS_futex, &g_state, FUTEX_WAIT, kJoinable, nullptr, nullptr, 0);
+  }
+  _exit(0);
+}
+
 template <class Program>
-void InAChild(const char* what, std::int64_t life_ns, Program program) {
+void InAChild(const char* what, std::int64_t life_ns, Program program, pid_t (*make)() = fork) {
   const std::int64_t start = Now();
-  const pid_t pid = fork();
+  const pid_t pid = make();
   if (pid == 0) {
     program();
     _exit(1);
@@ -67,4 +89,12 @@ int main(int argc, char** argv) {
     Begun(ExecuteSleep);
     pthread_exit(nullptr);
   });
+  InAChild(
+      "a state that the kernel clears", 200 * kMs,
+      [] {
+        Begun(AwaitState);
+        usleep(200'000);
+        pthread_exit(nullptr);
+      },
+      WithState);
 }

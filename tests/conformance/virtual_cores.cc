@@ -2,7 +2,9 @@
 // priority is the one it asks for.
 #include <pthread.h>
 #include <sched.h>
+#include <stddef.h>
 #include <sys/resource.h>
+#include <sys/rseq.h>
 #include <sys/syscall.h>
 #include <sys/sysinfo.h>
 
@@ -33,6 +35,34 @@ void Cores() {
     CPU_SET(5, &set);
     EXPECT(sched_setaffinity(0, sizeof set, &set) == -1 && errno == EINVAL, "another's core");
   }
+}
+
+// Where the kernel writes the processor into the thread's own memory; negative: it does not.
+int CpuOfRseq() {
+  int cpu = 0;
+  const char* area = static_cast<const char*>(__builtin_thread_pointer()) + __rseq_offset;
+  memcpy(&cpu, area + offsetof(struct rseq, cpu_id), sizeof cpu);
+  return cpu;
+}
+
+// All ways to ask for it name a processor that may be used; of threads, too.
+void* CoreOfThread(void*) {
+  cpu_set_t set;
+  EXPECT(sched_getaffinity(0, sizeof set, &set) == 0, "sched_getaffinity");
+  unsigned raw = ~0u;
+  EXPECT(syscall(SYS_getcpu, &raw, nullptr, nullptr) == 0, "getcpu: %s", strerror(errno));
+  const int by_rseq = CpuOfRseq();
+  for (const int cpu : {sched_getcpu(), static_cast<int>(raw), by_rseq < 0 ? 0 : by_rseq}) {
+    EXPECT(g_mode == Mode::kNative || CPU_ISSET(cpu, &set), "on processor %d", cpu);
+  }
+  return nullptr;
+}
+
+void CoresOfThreads() {
+  CoreOfThread(nullptr);
+  pthread_t thread;
+  EXPECT(pthread_create(&thread, nullptr, CoreOfThread, nullptr) == 0, "pthread_create");
+  pthread_join(thread, nullptr);
 }
 
 // Natively these need rights that not everybody has.
@@ -95,6 +125,7 @@ void RawCalls() {
 int main(int argc, char** argv) {
   Begin(argc, argv);
   Cores();
+  CoresOfThreads();
   if (g_mode != Mode::kNative) Priorities();
   if (g_mode != Mode::kNative) RawCalls();
   EXPECT(sched_yield() == 0, "sched_yield");

@@ -1,0 +1,14 @@
+// What the kernel tells a program at its start (getauxval(3)), of any process.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <map>
+
+namespace tcs {
+
+// By kind (AT_BASE and so on); empty if it cannot be read.
+std::map<std::uint64_t, std::uint64_t> ReadAuxiliaryVector(pid_t pid);
+
+}  // namespace tcs

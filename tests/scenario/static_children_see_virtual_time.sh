@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+source "$source_root/tests/as_nobody.sh"
+# What clients start without the shim, because it is linked statically, sees virtual time and the robot's processor all
+# the same. A program of musl's is named.
+# Topics: preloading, timers, processes, failures.
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+chmod 755 "$work"
+for how in static static-pie; do
+  c++ -O1 -$how -o "$work/$how" "$source_root/tests/programs/clock_teller.cc"
+done
+by_vfork='import subprocess, sys; subprocess.run(sys.argv[1:])'
+expect_hour() {  # TCSIM EXPECTED [WHAT STANDS BEFORE IT...]
+  local accounting how said
+  for accounting in measured fixed; do
+    for how in static static-pie; do
+      said=$(timeout 60 "${@:3}" "$1" exec --accounting $accounting -- sh -c "$work/$how; $work/$how")
+      [[ $said == "$2"$'\n'"$2" ]] || fail "$how, $accounting: an hour's sleep, seconds by each clock: $said"
+    done
+  done
+}
+hour='3600 3600 3600 on 0'
+expect_hour "$tcsim" "$hour"
+said=$(timeout 60 "$tcsim" exec -- python3 -c "$by_vfork" "$work/static")
+[[ $said == "$hour" ]] || fail "of a vfork's child: $said"
+install_for_everybody "$build" "$work"
+expect_hour "$work/bin/tcsim" "$hour" "${nobody[@]}"
+said=$(timeout 60 "$tcsim" exec --no-patch-vdso -- sh -c "$work/static")
+[[ $said == [01]' 3600 '[01]* || $said == [01]' '[01]' '[01]* ]] || fail "unpatched: $said"
+
+# The name of its loader tells.
+cp /lib64/ld-linux-x86-64.so.2 "$work/ld-musl-x86_64.so.1"
+c++ -o "$work/of_musl" "$source_root/tests/programs/clock_teller.cc" -Wl,--dynamic-linker="$work/ld-musl-x86_64.so.1"
+timeout 60 "$tcsim" exec -- sh -c "$work/of_musl; true" >/dev/null 2>"$work/said"
+grep -q "^tcsim: warning: $work/of_musl is linked against musl, .*rebuild it" "$work/said" || fail "of musl: $(cat "$work/said")"
