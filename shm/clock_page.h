@@ -101,10 +101,9 @@ inline std::int64_t ShownTime(const ClockPage& page, const ClockReading& r) {
   if (time > last) return time;
   if (page.ns_per_tick_q32 == 0 || last >= r.horizon_ns) return last;
   constexpr std::int64_t kLeast = 1, kMost = std::int64_t{1} << 32;  // nobody is behind so far
-  const auto run = static_cast<std::uint64_t>(RunTime(page, r));
-  const auto last_run =
-      static_cast<std::uint64_t>(page.last_shown_run_ns.load(std::memory_order_relaxed));
-  const std::int64_t half = static_cast<std::int64_t>(run - last_run) / 2;
+  const std::int64_t last_cpu = page.last_shown_cpu_ns.load(std::memory_order_relaxed);
+  const auto computed = static_cast<std::uint64_t>(r.cpu_ns) - static_cast<std::uint64_t>(last_cpu);
+  const std::int64_t half = static_cast<std::int64_t>(computed) / 2;
   const std::int64_t since = half < kLeast ? kLeast : half > kMost ? kMost : half;
   return since < r.horizon_ns - last ? last + since : r.horizon_ns;
 }
@@ -112,9 +111,16 @@ inline std::int64_t ShownTime(const ClockPage& page, const ClockReading& r) {
 // Remembers what the clock shows for a reading.
 inline std::int64_t ShowTime(ClockPage& page, const ClockReading& r) {
   const std::int64_t shown = ShownTime(page, r);
-  page.last_shown_run_ns.store(RunTime(page, r), std::memory_order_relaxed);
+  page.last_shown_cpu_ns.store(r.cpu_ns, std::memory_order_relaxed);
   page.last_shown_ns.store(shown, std::memory_order_relaxed);
   return shown;
+}
+
+// So much less has been charged than it seemed: what is computed from now on moves the clock on,
+// be it behind what it has shown.
+inline void FollowCharge(ClockPage& page, std::int64_t cpu_ns) {
+  if (page.last_shown_cpu_ns.load(std::memory_order_relaxed) > cpu_ns)
+    page.last_shown_cpu_ns.store(cpu_ns, std::memory_order_relaxed);
 }
 
 // Charged processor time according to the thread's own CPU clock, which others' use of the
@@ -132,6 +138,7 @@ inline bool RemoveStolen(ClockPage& page, const ClockReading& r, std::int64_t ho
   const std::uint64_t desired = PackAdjust(r.executed_word, AdjustValue(r.executed_word) - stolen);
   if (!page.executed_adjust.compare_exchange_strong(expected, desired)) return false;
   page.last_check_tsc.store(r.tsc, std::memory_order_relaxed);
+  FollowCharge(page, r.cpu_ns - stolen);
   if (stolen > 0) page.stolen_ns.fetch_add(stolen, std::memory_order_relaxed);
   return true;
 }
@@ -144,6 +151,7 @@ inline void RemoveUntold(ClockPage& page, const ClockReading& r, std::int64_t ho
   const std::uint64_t desired = PackAdjust(r.executed_word, AdjustValue(r.executed_word) - stolen);
   if (!page.executed_adjust.compare_exchange_strong(expected, desired)) return;
   page.host_cpu_origin_ns += host_ns;
+  FollowCharge(page, r.cpu_ns - stolen);
   page.last_check_tsc.store(r.tsc, std::memory_order_relaxed);
   page.stolen_ns.fetch_add(stolen, std::memory_order_relaxed);
 }

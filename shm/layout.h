@@ -214,9 +214,9 @@ struct ClockPage {
   std::uint64_t counts_work;  // not 0: the thread keeps its WorkCounts; kBeginsInCall
   // Nothing is produced before this any more in sockets that are local to the robot.
   std::int64_t local_read_safe_ns;
-  // Written by the thread, and by the coordinator at each dispatch: how long the thread had run
+  // Written by the thread, and by the coordinator at each dispatch: what the thread was charged
   // when its clock showed last_shown_ns.
-  std::atomic<std::int64_t> last_shown_run_ns;
+  std::atomic<std::int64_t> last_shown_cpu_ns;
 };
 static_assert(sizeof(ClockPage) == 192);
 static_assert(offsetof(ClockPage, staleness_ns) == 152);

@@ -83,8 +83,7 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   page.children_cpu_ns = task.process->children_cpu.ns();
   const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
   page.last_shown_ns.store(std::max(last, now.ns()), std::memory_order_relaxed);
-  page.last_shown_run_ns.store(task.charged.ns() + page.stolen_ns.load(std::memory_order_relaxed),
-                               std::memory_order_relaxed);
+  page.last_shown_cpu_ns.store(task.charged.ns(), std::memory_order_relaxed);
   slot.core = cpu.core;
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];

@@ -45,7 +45,7 @@ TEST(ClockPage, ShowsNeitherMoreThanTheHorizonNorLessThanBefore) {
   Page page(0);
   EXPECT_EQ(ShownTime(page, ReadClockAt(page, 1'000)), 2'000);
   EXPECT_EQ(ShownTime(page, ReadClockAt(page, 1'000'000)), 5'000);
-  page.last_shown_ns = page.last_shown_run_ns = 3'000;
+  page.last_shown_ns = page.last_shown_cpu_ns = 3'000;
   EXPECT_EQ(ShownTime(page, ReadClockAt(page, 1'000)), 3'001);
 }
 
@@ -73,6 +73,15 @@ TEST(ClockPage, NeitherDoesItStandStillWhereStolenTimeIsFound) {
   EXPECT_EQ(ShowTime(page, ReadClockAt(page, 1'100)), 2'050);
   EXPECT_EQ(ShowTime(page, ReadClockAt(page, 1'500)), 2'200);
   EXPECT_EQ(ShowTime(page, ReadClockAt(page, 1'600)), 2'300);
+}
+
+// While others had the processor nothing was computed.
+TEST(ClockPage, WhatWasStolenMakesUpForNothing) {
+  Page page(0);
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 1'000)), 2'000);
+  ASSERT_TRUE(RemoveStolen(page, ReadClockAt(page, 3'100), 1'000));
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 3'100)), 2'001);
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 3'300)), 2'200);
 }
 
 TEST(ClockPage, MakingUpItDoesNotPassItsHorizon) {
