@@ -131,12 +131,17 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
 
 // The first thread has the slot that it had before it executed its program. No thread reads them.
 Task* Registration::Adopt(pid_t tid, Moment moment) {
-  Process* process = run_.table.LivingProcess(ProcessOfThread(tid));
-  if (process == nullptr || !process->is_bare || process->link == nullptr) return nullptr;
-  Task& task = parts_.births.AddThread(*process, tid, moment.at);
-  task.slot = process->link->TakeSlot(task);
-  if (task.slot < 0) return &task;
-  task.slot_memory = &process->link->SlotAt(task.slot);
+  const pid_t pid = ProcessOfThread(tid);
+  Process* known = run_.table.LivingProcess(pid);
+  Process* maker = known != nullptr ? known : run_.table.LivingProcess(ParentOf(pid));
+  if (maker == nullptr || !maker->is_bare) return nullptr;
+  Task& task = known != nullptr ? parts_.births.AddThread(*known, tid, moment.at)
+                                : parts_.births.AddChild(pid, maker->pid, *maker, moment.at);
+  Process& process = *task.process;
+  process.is_bare = true;
+  if (process.link == nullptr) Connect(process);
+  if (process.link == nullptr || (task.slot = process.link->TakeSlot(task)) < 0) return &task;
+  task.slot_memory = &process.link->SlotAt(task.slot);
   task.metered.page = &task.slot_memory->clock;
   TakeEndWord(task, 0);  // nobody tells it
   task.executes = true;  // it has no handler by which it could be stopped

@@ -60,6 +60,31 @@ for accounting in measured fixed; do
   [[ $said == "1000 1000 1000" ]] || fail "threads, $accounting, without rights: $said"
 done
 
+# And what they fork.
+cat >"$work/forks.c" <<'C'
+#include <stdio.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+int main(void) {
+  const time_t begin = time(NULL);
+  int status;
+  if (fork() == 0) {
+    sleep(100);
+    _exit((int)(time(NULL) - begin));
+  }
+  wait(&status);
+  printf("%d %ld\n", WEXITSTATUS(status), (long)(time(NULL) - begin));
+}
+C
+cc -O1 -static -o "$work/forks" "$work/forks.c"
+for accounting in measured fixed; do
+  said=$(timeout 60 "$tcsim" exec --accounting $accounting -- sh -c "$work/forks")
+  [[ $said == "100 100" ]] || fail "a fork, $accounting: $said"
+  said=$(timeout 60 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $accounting -- sh -c "$work/forks")
+  [[ $said == "100 100" ]] || fail "a fork, $accounting, without rights: $said"
+done
+
 # The name of its loader tells.
 cp /lib64/ld-linux-x86-64.so.2 "$work/ld-musl-x86_64.so.1"
 c++ -o "$work/of_musl" "$source_root/tests/programs/clock_teller.cc" -Wl,--dynamic-linker="$work/ld-musl-x86_64.so.1"
