@@ -102,9 +102,10 @@ std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) 
   }
   table_.Wait(task.order, KeyFor(task, call, call.args[0]), command == FUTEX_WAIT ? kAnyBit : bits);
   // The owner of a robust lock that processes share may be in another one.
-  if (joined == nullptr) joined = run_.table.Living(static_cast<pid_t>(value & FUTEX_TID_MASK));
+  const auto holds = static_cast<pid_t>(value & FUTEX_TID_MASK);
+  if (joined == nullptr) joined = run_.table.Living(holds);
   const pid_t names = joined == nullptr ? 0 : joined->tid;
-  Enter(task, {.names_tid = names, .address = call.args[0]}, deadline);
+  Enter(task, {.names_tid = names, .address = call.args[0], .holds = holds}, deadline);
   return 0;
 }
 

@@ -62,6 +62,7 @@ Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
     guard_.LetThrough(*call);
     return {};
   }
+  if (by == nullptr) by = registration_.Adopt(call->tid, moment);
   const bool waits = by != nullptr && (by->slot >= 0 || call->number == SYS_futex);
   if (!waits || !PutOff(by, take)) return take(moment);
   by->is_call_put_off = true;

@@ -39,7 +39,10 @@ void BarePrograms::Begins(pid_t pid) {
         "runs programs of the GNU C library: rebuild it against that, or statically");
     return;
   }
-  const Process* process = run_.table.LivingProcess(pid);
+  Process* process = run_.table.LivingProcess(pid);
+  if (process != nullptr) process->is_bare = true;
+  // That of the program before.
+  if (Task* first = run_.table.Living(pid); first != nullptr) first->end_word = 0;
   if (process != nullptr && !process->patch_vdso) return;
   if (MakeVdsoCall(pid)) return;
   run_.Warn(name +

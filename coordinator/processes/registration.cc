@@ -117,13 +117,37 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   task.slot_memory = &process.link->SlotAt(task.slot);
   task.metered.page = &task.slot_memory->clock;
   if (!run_.turn.IsOf(task)) parts_.cpu.active().HoldUnknown(task);
-  if (hello.tid == hello.pid) starts_anew_(process, moment);
+  if (hello.tid == hello.pid) {
+    process.is_bare = false;
+    starts_anew_(process, moment);
+  }
   PlaceAtGate(task, moment.at);
   const int fds[shm::kMostAttachFds] = {memory_fd_, process.link->memory_fd(),
                                         process.link->notify_fd(), porters_end.get()};
   const std::size_t count = !wants_all ? 0 : porters_end ? 4 : 3;
   Accept(connection, static_cast<std::uint32_t>(task.slot), std::span(fds, count));
   return true;
+}
+
+// The first thread has the slot that it had before it executed its program. No thread reads them.
+Task* Registration::Adopt(pid_t tid, Moment moment) {
+  const pid_t pid = ProcessOfThread(tid);
+  Process* known = run_.table.LivingProcess(pid);
+  Process* maker = known != nullptr ? known : run_.table.LivingProcess(ParentOf(pid));
+  if (maker == nullptr || !maker->is_bare) return nullptr;
+  Task& task = known != nullptr ? parts_.births.AddThread(*known, tid, moment.at)
+                                : parts_.births.AddChild(pid, maker->pid, *maker, moment.at);
+  Process& process = *task.process;
+  process.is_bare = true;
+  if (process.link == nullptr) Connect(process);
+  if (process.link == nullptr || (task.slot = process.link->TakeSlot(task)) < 0) return &task;
+  task.slot_memory = &process.link->SlotAt(task.slot);
+  task.metered.page = &task.slot_memory->clock;
+  TakeEndWord(task, 0);  // nobody tells it
+  task.executes = true;  // it has no handler by which it could be stopped
+  parts_.cpu.active().HoldUnknown(task);
+  PlaceAtGate(task, moment.at);
+  return &task;
 }
 
 // The thread that registers: known already (a client, an announced child), a further thread of a
@@ -144,12 +168,13 @@ Task& Registration::TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment
 
 // The C library has taken back what an ended thread had there. Who waits there already, joins.
 void Registration::TakeEndWord(Task& task, std::uint64_t address) {
-  if (address == 0) return;
   for (Task& other : run_.table.tasks()) {
     if (other.process != task.process) continue;
     if (other.end_word == address) other.end_word = 0;
     auto* wait = other.Awaits<awaited::Futex>();
-    if (wait != nullptr && wait->address == address) wait->names_tid = task.tid;
+    if (wait == nullptr) continue;
+    const bool joins = address == 0 ? wait->holds == task.tid : wait->address == address;
+    if (joins) wait->names_tid = task.tid;
   }
   task.end_word = address;
 }

@@ -56,6 +56,10 @@ class Registration {
   // A process that has connected says what it wants, at that descriptor. True if the running thread
   // has to be stopped.
   bool Heard(int fd, Moment moment);
+  // A thread that nobody knows has made a trapped call. If its program runs without the shim, or
+  // such a one has forked it, it will never register, and has its place from now on; null: it will,
+  // or is unmanaged.
+  Task* Adopt(pid_t tid, Moment moment);
   // The thread is dispatched, and registers now if it has wanted to before.
   void LetRegister(const Task& dispatched);
   // The turns of the threads that make others are over, and they have announced none of the threads

@@ -152,6 +152,7 @@ struct Process {
   int priority = 0;
   VirtualDuration deadline;  // its client's, under scheduler: edf; 0: none
   VirtualDuration call_cost, allocation_cost;
+  bool is_bare = false;  // its program runs without the shim (bare_programs.h)
   bool patch_vdso = false, dds_endpoints = false;
   shm::Draws draws;  // by trapped calls, where they repeat
   ProgramClock clock;

@@ -69,7 +69,8 @@ struct Child {
 struct Futex {
   // The thread that a join waits for, a robust lock's owner; 0: neither.
   pid_t names_tid = 0;
-  std::uint64_t address = 0;  // of the word of such a wait, in the thread's memory
+  std::uint64_t address = 0;  // of the word of such a wait, in the thread's memory,
+  pid_t holds = 0;            // and what may be the id of a thread that is not known yet
   // Of a lock that lends priority:
   int owner = kNobody;
   std::uint64_t lock_address = 0;  // in the thread's memory

@@ -374,7 +374,7 @@ int Connect() {
 
 void RegisterFalsely() {
   for (int i = 0; i < 40; ++i) {
-    AttachHello hello{kMagic, kVersion, getpid(), 0, 0, AttachWants{}, 0};
+    AttachHello hello{kMagic, kVersion, getpid(), 0, 0, AttachWants{}, 0, 0};
     hello.tid = static_cast<std::int32_t>(Below(2) == 0 ? 2 + Below(32768) : Odd());
     hello.parent_pid = static_cast<std::int32_t>(Odd());
     hello.wants = static_cast<AttachWants>(Below(5));
@@ -395,7 +395,7 @@ void RegisterAgain() {
   pthread_t thread;
   pthread_create(&thread, nullptr, SpinForEver, nullptr);
   Pass(1);
-  const AttachHello hello{kMagic, kVersion, getpid(), getpid(), getppid(), AttachWants::kAll, 0};
+  const AttachHello hello{kMagic, kVersion, getpid(), getpid(), getppid(), AttachWants::kAll, 0, 0};
   send(Connect(), &hello, sizeof hello, MSG_NOSIGNAL);
   Pass(1);
   _exit(0);
@@ -415,7 +415,7 @@ void CorruptDds() {
   ask(NotificationKind::kDdsJoin, 0);
   const int socket = Connect();
   const AttachHello hello{kMagic, kVersion, getpid(), getpid(), getppid(), AttachWants::kDdsArea,
-                          0};
+                          0,      0};
   send(socket, &hello, sizeof hello, MSG_NOSIGNAL);
   AttachReply reply;
   iovec iov{&reply, sizeof reply};

@@ -29,6 +29,62 @@ expect_hour "$work/bin/tcsim" "$hour" "${nobody[@]}"
 said=$(timeout 60 "$tcsim" exec --no-patch-vdso -- sh -c "$work/static")
 [[ $said == [01]' 3600 '[01]* || $said == [01]' '[01]' '[01]* ]] || fail "unpatched: $said"
 
+# Threads of theirs, too; one computes while the other sleeps.
+cat >"$work/threads.c" <<'C'
+#include <pthread.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+static void* Sleep(void* took) {
+  const time_t begin = time(NULL);
+  sleep(1000);
+  *(long*)took = time(NULL) - begin;
+  return NULL;
+}
+int main(void) {
+  long took[2];
+  pthread_t threads[2];
+  const time_t begin = time(NULL);
+  for (int i = 0; i < 2; ++i) pthread_create(&threads[i], NULL, Sleep, &took[i]);
+  for (volatile long i = 0; i < 20000000; ++i) {
+  }
+  for (int i = 0; i < 2; ++i) pthread_join(threads[i], NULL);
+  printf("%ld %ld %ld\n", took[0], took[1], (long)(time(NULL) - begin));
+}
+C
+cc -O1 -static -o "$work/threads" "$work/threads.c"
+for accounting in measured fixed; do
+  said=$(timeout 60 "$tcsim" exec --accounting $accounting -- sh -c "$work/threads")
+  [[ $said == "1000 1000 1000" ]] || fail "threads, $accounting: $said"
+  said=$(timeout 60 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $accounting -- sh -c "$work/threads")
+  [[ $said == "1000 1000 1000" ]] || fail "threads, $accounting, without rights: $said"
+done
+
+# And what they fork.
+cat >"$work/forks.c" <<'C'
+#include <stdio.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+int main(void) {
+  const time_t begin = time(NULL);
+  int status;
+  if (fork() == 0) {
+    sleep(100);
+    _exit((int)(time(NULL) - begin));
+  }
+  wait(&status);
+  printf("%d %ld\n", WEXITSTATUS(status), (long)(time(NULL) - begin));
+}
+C
+cc -O1 -static -o "$work/forks" "$work/forks.c"
+for accounting in measured fixed; do
+  said=$(timeout 60 "$tcsim" exec --accounting $accounting -- sh -c "$work/forks")
+  [[ $said == "100 100" ]] || fail "a fork, $accounting: $said"
+  said=$(timeout 60 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $accounting -- sh -c "$work/forks")
+  [[ $said == "100 100" ]] || fail "a fork, $accounting, without rights: $said"
+done
+
 # The name of its loader tells.
 cp /lib64/ld-linux-x86-64.so.2 "$work/ld-musl-x86_64.so.1"
 c++ -o "$work/of_musl" "$source_root/tests/programs/clock_teller.cc" -Wl,--dynamic-linker="$work/ld-musl-x86_64.so.1"
