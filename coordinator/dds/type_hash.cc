@@ -1,8 +1,11 @@
 #include "coordinator/dds/type_hash.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <openssl/sha.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <iterator>
 #include <map>
@@ -10,7 +13,6 @@
 #include <set>
 
 #include "coordinator/dds/message_fields.h"
-#include "coordinator/dds/sha256.h"
 #include "shm/check.h"
 
 namespace tcs::dds {
@@ -116,6 +118,13 @@ std::string DescribeInFull(std::string_view type) {
   }
   return fmt::format(R"({{"type_description": {}, "referenced_type_descriptions": [{}]}})", own,
                      referenced);
+}
+
+// In 64 hexadecimal digits.
+std::string Sha256(const std::string& text) {
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest;
+  SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest.data());
+  return fmt::format("{:02x}", fmt::join(digest, ""));
 }
 
 }  // namespace

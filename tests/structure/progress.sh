@@ -75,7 +75,8 @@ printf 'pmstatus:libfoo:amd64:75.0000:Unpacking libfoo\nE: the disk is full\n'
 sleep "${2:-0.12}"
 exit "$1"
 APT
-said=$(on_terminal 80 "'$root/.ci/progress' --quiet installing bash '$out/apt' 0")
+# Time enough to see each word of it where the processors are taken, too: the line moves ten times a second.
+said=$(on_terminal 80 "'$root/.ci/progress' --quiet installing bash '$out/apt' 0 0.8")
 [[ $said == *"installing: fetching 40 %"*"installing: setting up 75 %"* ]] || fail "apt-get on a terminal: $said"
 [[ $(left <<<"$said") == "./dev: installing: done in 0:0"? ]] || fail "apt-get is not quiet: $said"
 said=$("$root/.ci/progress" --quiet --last 1 installing bash "$out/apt" 9 0 2>&1) && fail "apt-get's status is lost"
