@@ -18,7 +18,7 @@ std::int64_t ToThreeDigits(std::int64_t ns) {
   return (ns + unit / 2) / unit * unit;
 }
 
-constexpr std::size_t kMostPeriods = 256;
+constexpr std::size_t kMostPeriods = 256, kMostUncounted = 512;
 // The shortest period is a timer's that is so often that this times as many are all.
 constexpr std::int64_t kOftenEnough = 4;
 
@@ -38,6 +38,8 @@ void AnswerBook::HasBegun(int client) {
   Kept& kept = KeptOf(client);
   if (std::exchange(kept.has_begun, true)) return;
   kept.judged = kept.others = {};
+  kept.new_judged.clear();
+  kept.new_others.clear();
   kept.in_a_row = 0;
   kept.sources.clear();
   kept.figures.deadline = {};
@@ -242,10 +244,18 @@ void AnswerBook::NoteWait(Kept& kept, const Response& response) const {
   longest = {waited_ns, response.release_ns, response.TookNs(), KeptOf(most->first).client.name};
 }
 
-void AnswerBook::Count(const Response& response, ActivationTimes& times) {
-  times.response.Add(response.TookNs());
-  times.start_delay.Add(response.start_ns - response.release_ns);
-  times.execution.Add(response.charged_ns);
+void AnswerBook::Note(const Response& response, std::vector<Times>& news, ActivationTimes& times) {
+  news.push_back({response.TookNs(), response.start_ns - response.release_ns, response.charged_ns});
+  if (news.size() == kMostUncounted) Count(news, times);
+}
+
+void AnswerBook::Count(std::vector<Times>& news, ActivationTimes& times) {
+  for (const Times& took : news) {
+    times.response.Add(took.response_ns);
+    times.start_delay.Add(took.start_delay_ns);
+    times.execution.Add(took.execution_ns);
+  }
+  news.clear();
 }
 
 void AnswerBook::Add(const ByClient& part, std::map<std::string, std::int64_t>& to) const {
@@ -256,8 +266,8 @@ void AnswerBook::Judge(Kept& kept, Response response, std::int64_t period_ns, in
   const bool has_own = kept.client.deadline_ns > 0;
   response.deadline_ns = has_own ? kept.client.deadline_ns : std::max<std::int64_t>(0, period_ns);
   if (on_response_) on_response_(response);
-  Count(response, response.deadline_ns == 0 ? kept.others : kept.judged);
-  if (response.deadline_ns == 0) return;
+  if (response.deadline_ns == 0) return Note(response, kept.new_others, kept.others);
+  Note(response, kept.new_judged, kept.judged);
   DeadlineFigures& figures = kept.figures.deadline;
   ++figures.judged;
   if (!has_own) {
@@ -318,7 +328,9 @@ std::vector<ClientFigures> AnswerBook::Conclude(std::int64_t end_ns) {
     JudgeLast(*thread);
   }
   std::vector<ClientFigures> all;
-  for (const Kept& kept : clients_) {
+  for (Kept& kept : clients_) {
+    Count(kept.new_judged, kept.judged);
+    Count(kept.new_others, kept.others);
     ClientFigures& figures = all.emplace_back(kept.figures);
     if (kept.client.deadline_ns > 0) {
       figures.deadline.deadline_ns = kept.client.deadline_ns;

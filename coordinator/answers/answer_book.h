@@ -156,10 +156,16 @@ class AnswerBook {
     // How often a period was so long, to three digits: whoever is late may leave expiries out.
     std::map<std::int64_t, std::int64_t> periods_ns;
   };
+  // What an activation took.
+  struct Times {
+    std::int64_t response_ns, start_delay_ns, execution_ns;
+  };
   struct Kept {
     Client client;
     ClientFigures figures;
     ActivationTimes judged, others;
+    // The same of the latest, which are counted hundreds at once.
+    std::vector<Times> new_judged, new_others;
     bool has_begun = false;
     std::int64_t in_a_row = 0;
     std::map<int, Source> sources;  // by sensor; kTimer: its timer
@@ -179,7 +185,8 @@ class AnswerBook {
   void Add(const ByClient& part, std::map<std::string, std::int64_t>& to) const;
   void NoteWait(Kept& kept, const Response& response) const;
   void HasBegun(int client);
-  static void Count(const Response& response, ActivationTimes& times);
+  static void Note(const Response& response, std::vector<Times>& news, ActivationTimes& times);
+  static void Count(std::vector<Times>& news, ActivationTimes& times);
   void EndOf(Thread& thread, Response response, const Release& release);
   void EndPaused(Thread& thread, std::int64_t end_ns);
   static std::int64_t PeriodOf(const Source& source);

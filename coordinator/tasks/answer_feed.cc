@@ -65,16 +65,23 @@ std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const std::string& client) cons
 void AnswerFeed::Dies(const Task& task) {
   book_.Dies(task.order);
   chains_.Dies(task.order);
+  const auto number = static_cast<std::size_t>(task.order);
+  if (number < known_.size()) known_[number] = {};
 }
 
 std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const Task& task) const {
-  const Process* client = task.process->client;
-  if (client == nullptr || client->spec == nullptr) return std::nullopt;
-  std::optional<AnswerBook::Who> who = WhoIs(*client->spec);
-  if (!who.has_value()) return std::nullopt;
-  who->thread = task.order;
-  who->is_first = !task.is_further;
-  return who;
+  const auto number = static_cast<std::size_t>(task.order);
+  if (number >= known_.size()) known_.resize(number + 1);
+  Known& known = known_[number];
+  if (known.process != task.process) {
+    const Process* client = task.process->client;
+    if (client == nullptr || client->spec == nullptr) return std::nullopt;
+    const std::optional<AnswerBook::Who> found = WhoIs(*client->spec);
+    if (!found.has_value()) return std::nullopt;
+    known = {task.process, found->client};
+  }
+  return AnswerBook::Who{
+      .client = known.client, .thread = task.order, .is_first = !task.is_further};
 }
 
 }  // namespace tcs

@@ -40,10 +40,16 @@ class AnswerFeed {
  private:
   void OpenChains(const Scenario& scenario);
 
+  // Whose a thread was when it was last asked for, which it is several times in each of its turns.
+  struct Known {
+    const Process* process = nullptr;  // null: nobody's, as far as is known
+    int client = 0;
+  };
   AnswerBook book_;
   ChainBook chains_;
   std::unordered_map<const ClientSpec*, int> clients_;
   std::map<std::string, int> names_;
+  mutable std::vector<Known> known_;  // by thread, as AnswerBook::Who has it
 };
 
 }  // namespace tcs

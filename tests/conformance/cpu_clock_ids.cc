@@ -19,7 +19,11 @@ int main(int argc, char** argv) {
     // Under tcs the clock's readings are what moves it with set costs.
     while (Now(clock) - start < 20 * kMs) {
     }
-    EXPECT(Now() - start_time >= 320 * kMs, "computing took no time");
+    // A thread's clock may have been ahead of what it had computed, and it makes up for that.
+    const std::int64_t ahead = g_mode == Mode::kMeasured ? kMs / 5 : 0;
+    const std::int64_t passed = Now() - start_time;
+    EXPECT(passed >= 320 * kMs - ahead, "computing 20 ms and a sleep took %lld ns",
+           (long long)passed);
   }
   EXPECT(Now(thread) <= Now(process), "a thread has computed more than its process");
 }
