@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "coordinator/answers/by_number.h"
+
 namespace tcs {
 
 namespace {
@@ -61,10 +63,9 @@ AnswerBook::Thread* AnswerBook::Find(int thread) {
 }
 
 AnswerBook::Thread& AnswerBook::ThreadOf(const Who& who) {
-  const auto number = static_cast<std::size_t>(who.thread);
-  if (number >= threads_.size()) threads_.resize(number + 1);
-  if (threads_[number] == nullptr) threads_[number] = std::make_unique<Thread>();
-  Thread& thread = *threads_[number];
+  std::unique_ptr<Thread>& place = PlaceOf(threads_, who.thread);
+  if (place == nullptr) place = std::make_unique<Thread>();
+  Thread& thread = *place;
   thread.client = who.client;
   thread.is_first = who.is_first;
   return thread;

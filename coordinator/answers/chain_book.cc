@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "coordinator/answers/by_number.h"
+
 namespace tcs {
 
 namespace {
@@ -47,20 +49,14 @@ ChainBook::Had& ChainBook::HadOf(Knows& knows, const LineageOf& of) {
   return knows.insert(place, {of, {}})->second;
 }
 
-ChainBook::Knows& ChainBook::At(std::vector<Knows>& all, int number) {
-  const auto place = static_cast<std::size_t>(number);
-  if (place >= all.size()) all.resize(place + 1);
-  return all[place];
-}
-
 void ChainBook::Dies(int thread) {
-  if (static_cast<std::size_t>(thread) < threads_.size()) At(threads_, thread).clear();
+  if (static_cast<std::size_t>(thread) < threads_.size()) PlaceOf(threads_, thread).clear();
 }
 
 ChainBook::Knows& ChainBook::UsedBy(const Who& who, std::int64_t at_ns) {
-  const bool has_taken =
-      static_cast<std::size_t>(who.thread) < threads_.size() && !At(threads_, who.thread).empty();
-  Knows& knows = has_taken ? At(threads_, who.thread) : At(of_clients_, who.client);
+  const bool has_taken = static_cast<std::size_t>(who.thread) < threads_.size() &&
+                         !PlaceOf(threads_, who.thread).empty();
+  Knows& knows = has_taken ? PlaceOf(threads_, who.thread) : PlaceOf(of_clients_, who.client);
   for (auto& [of, had] : knows) {
     if (had.first_ns < 0) had.first_ns = at_ns;
   }
@@ -87,8 +83,8 @@ Lineage ChainBook::Sends(const Who& who, std::int64_t at_ns) {
 void ChainBook::Took(const Who& who, const Lineage& lineage, std::int64_t arrived_ns,
                      std::int64_t at_ns) {
   if (lineage == nullptr) return;
-  Knows& thread = At(threads_, who.thread);
-  Knows& client = At(of_clients_, who.client);
+  Knows& thread = PlaceOf(threads_, who.thread);
+  Knows& client = PlaceOf(of_clients_, who.client);
   for (const auto& [of, sample] : *lineage) {
     LineageOf reached = of;
     if (of.chain >= 0) {

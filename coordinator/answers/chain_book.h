@@ -76,7 +76,6 @@ class ChainBook {
   };
 
   static Had& HadOf(Knows& knows, const LineageOf& of);
-  static Knows& At(std::vector<Knows>& all, int number);
   // What it knows, of which it sends something at that time.
   Knows& UsedBy(const Who& who, std::int64_t at_ns);
   void Count(const LineageOf& of, const Had& had, int client, int command, std::int64_t at_ns);

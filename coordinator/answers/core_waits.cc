@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "coordinator/answers/by_number.h"
+
 namespace tcs {
 
 void CoreWaits::Add(int thread, const Slice& slice, Waiting& waiting) {
@@ -12,21 +14,9 @@ void CoreWaits::Add(int thread, const Slice& slice, Waiting& waiting) {
   (slice.thread == thread ? waiting.times.own_ns : waiting.times.others_ns[slice.client]) += ns;
 }
 
-CoreWaits::Waiting& CoreWaits::WaitingOf(int thread) {
-  const auto number = static_cast<std::size_t>(thread);
-  if (number >= waiting_.size()) waiting_.resize(number + 1);
-  return waiting_[number];
-}
-
-CoreWaits::OfRobot& CoreWaits::RobotOf(int robot) {
-  const auto number = static_cast<std::size_t>(robot);
-  if (number >= robots_.size()) robots_.resize(number + 1);
-  return robots_[number];
-}
-
 void CoreWaits::Ready(const Of& who, std::int64_t at_ns) {
-  Waiting& waiting = WaitingOf(who.thread);
-  OfRobot& robot = RobotOf(who.robot);
+  Waiting& waiting = PlaceOf(waiting_, who.thread);
+  OfRobot& robot = PlaceOf(robots_, who.robot);
   if (!waiting.is_ready) robot.ready.push_back(who.thread);
   waiting = {true, who.robot, at_ns, {}};
   if (robot.latest_end_ns <= at_ns) return;
@@ -34,18 +24,18 @@ void CoreWaits::Ready(const Of& who, std::int64_t at_ns) {
 }
 
 void CoreWaits::Ran(const Of& who, std::int64_t start_ns, std::int64_t end_ns) {
-  OfRobot& robot = RobotOf(who.robot);
+  OfRobot& robot = PlaceOf(robots_, who.robot);
   const Slice slice{who.thread, who.client, start_ns, end_ns};
-  for (const int thread : robot.ready) Add(thread, slice, WaitingOf(thread));
+  for (const int thread : robot.ready) Add(thread, slice, PlaceOf(waiting_, thread));
   if (robot.slices.size() == kMostSlices) robot.slices.pop_front();
   robot.slices.push_back(slice);
   robot.latest_end_ns = std::max(robot.latest_end_ns, end_ns);
 }
 
 CoreWaits::Times CoreWaits::Stop(int thread) {
-  Waiting& waiting = WaitingOf(thread);
+  Waiting& waiting = PlaceOf(waiting_, thread);
   if (!waiting.is_ready) return {};
-  std::erase(RobotOf(waiting.robot).ready, thread);
+  std::erase(PlaceOf(robots_, waiting.robot).ready, thread);
   waiting.is_ready = false;
   return std::exchange(waiting.times, {});
 }

@@ -62,8 +62,6 @@ class CoreWaits {
   };
 
   static void Add(int thread, const Slice& slice, Waiting& waiting);
-  Waiting& WaitingOf(int thread);
-  OfRobot& RobotOf(int robot);
 
   std::vector<Waiting> waiting_;  // by thread
   std::vector<OfRobot> robots_;

@@ -306,14 +306,13 @@ std::vector<std::string> DatagramQueues::WhatNobodyHeard() const {
   const std::vector<std::string> names = answers_.NamesOfClients();
   for (const auto& [address, queue] : queues_) {
     for (const Flow& flow : queue.flows) {
-      const auto& [sender, channel] = std::tie(flow.sender, flow.channel);
       // What the world sends to nobody is warned of (World::UnheardSensors).
-      if (!answers_.WhoIs(sender).has_value()) continue;
+      if (!answers_.WhoIs(flow.sender).has_value()) continue;
       if (queue.has_reader) {
-        heard.push_back({names[static_cast<std::size_t>(queue.reader.client)], channel});
+        heard.push_back({names[static_cast<std::size_t>(queue.reader.client)], flow.channel});
         break;
       }
-      if (flow.input.sent > 0) unheard.push_back({sender, channel, flow.input.sent});
+      if (flow.input.sent > 0) unheard.push_back({flow.sender, flow.channel, flow.input.sent});
     }
   }
   return SentencesOn(unheard, heard);

@@ -3,6 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/answers/by_number.h"
+
 namespace tcs {
 
 void AnswerFeed::Open(const Scenario& scenario) {
@@ -65,14 +67,11 @@ std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const std::string& client) cons
 void AnswerFeed::Dies(const Task& task) {
   book_.Dies(task.order);
   chains_.Dies(task.order);
-  const auto number = static_cast<std::size_t>(task.order);
-  if (number < known_.size()) known_[number] = {};
+  PlaceOf(known_, task.order) = {};
 }
 
 std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const Task& task) const {
-  const auto number = static_cast<std::size_t>(task.order);
-  if (number >= known_.size()) known_.resize(number + 1);
-  Known& known = known_[number];
+  Known& known = PlaceOf(known_, task.order);
   if (known.process != task.process) {
     const Process* client = task.process->client;
     if (client == nullptr || client->spec == nullptr) return std::nullopt;

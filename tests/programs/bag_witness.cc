@@ -19,6 +19,7 @@
 #include "nav_msgs.h"
 #include "rosgraph_msgs.h"
 #include "sensor_msgs.h"
+#include "tests/programs/dds_program.h"
 
 namespace {
 
@@ -30,12 +31,6 @@ using Wrench = geometry_msgs_msg_dds__Wrench_;
 
 constexpr dds_duration_t kPeriod = DDS_MSECS(10);
 constexpr int kElsewhere = 7;  // a domain without anybody else
-
-dds_return_t OrDie(dds_return_t result, const char* what) {
-  if (result >= 0) return result;
-  fprintf(stderr, "cannot %s: %s\n", what, dds_strretcode(result));
-  exit(1);
-}
 
 // A sample's fields, one after the other.
 class Fields {

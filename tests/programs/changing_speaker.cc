@@ -13,18 +13,13 @@
 
 #include "dds/dds.h"
 #include "rosgraph_msgs.h"
+#include "tests/programs/dds_program.h"
 
 namespace {
 
 using Clock = rosgraph_msgs_msg_dds__Clock_;
 
 constexpr int kLast = 150;
-
-dds_return_t OrDie(dds_return_t result, const char* what) {
-  if (result >= 0) return result;
-  fprintf(stderr, "cannot %s: %s\n", what, dds_strretcode(result));
-  exit(1);
-}
 
 struct Ends {
   dds_entity_t participant, topic;

@@ -6,16 +6,7 @@
 
 #include "dds/dds.h"
 #include "rosgraph_msgs.h"
-
-namespace {
-
-dds_return_t OrDie(dds_return_t result, const char* what) {
-  if (result >= 0) return result;
-  fprintf(stderr, "cannot %s: %s\n", what, dds_strretcode(result));
-  exit(1);
-}
-
-}  // namespace
+#include "tests/programs/dds_program.h"
 
 int main() {
   const dds_entity_t participant =

@@ -19,6 +19,7 @@
 
 #include "dds/dds.h"
 #include "rosgraph_msgs.h"
+#include "tests/programs/dds_program.h"
 
 namespace {
 
@@ -27,24 +28,6 @@ using Clock = rosgraph_msgs_msg_dds__Clock_;
 constexpr int kCount = 30;
 constexpr std::int64_t kMs = 1'000'000;
 constexpr const char* kKinds[] = {"taking", "waiting", "loaned", "reading", "draining"};
-
-dds_return_t OrDie(dds_return_t result, const char* what) {
-  if (result >= 0) return result;
-  fprintf(stderr, "cannot %s: %s\n", what, dds_strretcode(result));
-  exit(1);
-}
-
-std::int64_t Now(clockid_t id) {
-  timespec t;
-  clock_gettime(id, &t);
-  return t.tv_sec * 1'000 * kMs + t.tv_nsec;
-}
-
-void Compute(std::int64_t ns) {
-  const std::int64_t end = Now(CLOCK_THREAD_CPUTIME_ID) + ns;
-  while (Now(CLOCK_THREAD_CPUTIME_ID) < end) {
-  }
-}
 
 dds_entity_t Topic(dds_entity_t participant, const char* kind) {
   return OrDie(dds_create_topic(participant, &rosgraph_msgs_msg_dds__Clock__desc,

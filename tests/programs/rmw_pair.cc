@@ -25,6 +25,7 @@
 #include "dds/ddsi/ddsi_serdata.h"
 #include "rmw_dds_common_iron.h"
 #include "rosgraph_msgs.h"
+#include "tests/programs/dds_program.h"
 
 namespace {
 
@@ -34,24 +35,6 @@ using Graph = rmw_dds_common_iron_msg_dds__ParticipantEntitiesInfo_;
 constexpr std::int64_t kMs = 1'000'000;
 constexpr const char* kType =
     "typehash=RIHS01_692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564;";
-
-dds_return_t OrDie(dds_return_t result, const char* what) {
-  if (result >= 0) return result;
-  fprintf(stderr, "cannot %s: %s\n", what, dds_strretcode(result));
-  exit(1);
-}
-
-std::int64_t Now(clockid_t id = CLOCK_MONOTONIC) {
-  timespec t;
-  clock_gettime(id, &t);
-  return t.tv_sec * 1'000 * kMs + t.tv_nsec;
-}
-
-void Compute(std::int64_t ns) {
-  const std::int64_t end = Now(CLOCK_THREAD_CPUTIME_ID) + ns;
-  while (Now(CLOCK_THREAD_CPUTIME_ID) < end) {
-  }
-}
 
 dds_qos_t* Qos(bool is_latched) {
   dds_qos_t* qos = dds_create_qos();
@@ -110,6 +93,8 @@ class Node {
   dds_entity_t Topic(const char* name, const dds_topic_descriptor_t* type) const {
     return OrDie(dds_create_topic(participant_, type, name, nullptr, nullptr), "make a topic");
   }
+  // What is talked about.
+  dds_entity_t Chatter() const { return Topic("rt/chatter", &rosgraph_msgs_msg_dds__Clock__desc); }
   dds_entity_t participant() const { return participant_; }
   dds_entity_t waits() const { return waits_; }
   int seen() const { return seen_; }
@@ -158,10 +143,7 @@ void Talk(int count) {
   Node node("talker");
   dds_qos_t* qos = Qos(false);
   const dds_entity_t writer =
-      OrDie(dds_create_writer(node.participant(),
-                              node.Topic("rt/chatter", &rosgraph_msgs_msg_dds__Clock__desc), qos,
-                              nullptr),
-            "make a writer");
+      OrDie(dds_create_writer(node.participant(), node.Chatter(), qos, nullptr), "make a writer");
   dds_delete_qos(qos);
   node.Tell();
   dds_publication_matched_status_t matched{};
@@ -187,10 +169,7 @@ void Listen(int count) {
   Node node("listener");
   dds_qos_t* qos = Qos(false);
   const dds_entity_t reader =
-      OrDie(dds_create_reader(node.participant(),
-                              node.Topic("rt/chatter", &rosgraph_msgs_msg_dds__Clock__desc), qos,
-                              nullptr),
-            "make a reader");
+      OrDie(dds_create_reader(node.participant(), node.Chatter(), qos, nullptr), "make a reader");
   dds_delete_qos(qos);
   const dds_entity_t there =
       OrDie(dds_create_readcondition(reader, DDS_ANY_STATE), "make a read condition");

@@ -18,16 +18,11 @@
 #include "dds/dds.h"
 #include "rmw_dds_common.h"
 #include "rmw_dds_common_iron.h"
+#include "tests/programs/dds_program.h"
 
 namespace {
 
 using Bytes = std::string;
-
-dds_return_t OrDie(dds_return_t result, const char* what) {
-  if (result >= 0) return result;
-  fprintf(stderr, "cannot %s: %s\n", what, dds_strretcode(result));
-  exit(1);
-}
 
 Bytes ToBytes(const dds_guid_t& guid) { return Bytes(reinterpret_cast<const char*>(guid.v), 16); }
 

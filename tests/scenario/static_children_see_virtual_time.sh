@@ -20,6 +20,15 @@ expect_hour() {  # TCSIM EXPECTED [WHAT STANDS BEFORE IT...]
     done
   done
 }
+expect_of() {  # PROGRAM EXPECTED: by each accounting, with rights and without
+  local accounting said
+  for accounting in measured fixed; do
+    said=$(timeout 60 "$tcsim" exec --accounting $accounting -- sh -c "$work/$1")
+    [[ $said == "$2" ]] || fail "$1, $accounting: $said"
+    said=$(timeout 60 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $accounting -- sh -c "$work/$1")
+    [[ $said == "$2" ]] || fail "$1, $accounting, without rights: $said"
+  done
+}
 hour='3600 3600 3600 on 0'
 expect_hour "$tcsim" "$hour"
 said=$(timeout 60 "$tcsim" exec -- python3 -c "$by_vfork" "$work/static")
@@ -53,12 +62,7 @@ int main(void) {
 }
 C
 cc -O1 -static -o "$work/threads" "$work/threads.c"
-for accounting in measured fixed; do
-  said=$(timeout 60 "$tcsim" exec --accounting $accounting -- sh -c "$work/threads")
-  [[ $said == "1000 1000 1000" ]] || fail "threads, $accounting: $said"
-  said=$(timeout 60 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $accounting -- sh -c "$work/threads")
-  [[ $said == "1000 1000 1000" ]] || fail "threads, $accounting, without rights: $said"
-done
+expect_of threads "1000 1000 1000"
 
 # And what they fork.
 cat >"$work/forks.c" <<'C'
@@ -78,12 +82,7 @@ int main(void) {
 }
 C
 cc -O1 -static -o "$work/forks" "$work/forks.c"
-for accounting in measured fixed; do
-  said=$(timeout 60 "$tcsim" exec --accounting $accounting -- sh -c "$work/forks")
-  [[ $said == "100 100" ]] || fail "a fork, $accounting: $said"
-  said=$(timeout 60 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $accounting -- sh -c "$work/forks")
-  [[ $said == "100 100" ]] || fail "a fork, $accounting, without rights: $said"
-done
+expect_of forks "100 100"
 
 # The name of its loader tells.
 cp /lib64/ld-linux-x86-64.so.2 "$work/ld-musl-x86_64.so.1"

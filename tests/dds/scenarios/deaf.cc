@@ -1,6 +1,7 @@
 // A program makes its domain deaf (dds_domain_set_deafmute), for less than the others' leases and
 // then for longer. What a reliable writer writes meanwhile comes when it hears again, what a
 // best-effort one writes is lost. After the lease it has lost the others, which have not lost it.
+#include "tests/dds/support/matches.h"
 #include "tests/dds/support/process.h"
 #include "tests/dds/support/samples.h"
 
@@ -9,18 +10,6 @@ namespace {
 using namespace dds_test;
 
 Qos Lossy() { return Qos().BestEffort().KeepAll(); }
-
-void TellReaders(const char* when, dds_entity_t writer) {
-  dds_publication_matched_status_t status;
-  OK(dds_get_publication_matched_status(writer, &status));
-  Event("%s: %u readers, %u so far", when, status.current_count, status.total_count);
-}
-
-void TellWriters(const char* when, dds_entity_t reader) {
-  dds_subscription_matched_status_t status;
-  OK(dds_get_subscription_matched_status(reader, &status));
-  Event("%s: %u writers, %u so far", when, status.current_count, status.total_count);
-}
 
 void Writer(Process& self) {
   self.UseShortLease("2s");

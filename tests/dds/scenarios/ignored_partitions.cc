@@ -1,6 +1,7 @@
 // Endpoints of partitions and topics that the configuration ignores (IgnoredPartitions) match in
 // their own domain only, also by partitions of theirs that are not ignored. The other process
 // ignores nothing.
+#include "tests/dds/support/matches.h"
 #include "tests/dds/support/process.h"
 #include "tests/dds/support/samples.h"
 
@@ -26,18 +27,6 @@ dds_entity_t ReaderOf(dds_entity_t participant, dds_entity_t topic, std::vector<
                      in.data());
   const dds_entity_t subscriber = OK(dds_create_subscriber(participant, qos.get(), nullptr));
   return OK(dds_create_reader(subscriber, topic, Plain().get(), nullptr));
-}
-
-void TellReaders(const char* who, dds_entity_t writer) {
-  dds_publication_matched_status_t status;
-  OK(dds_get_publication_matched_status(writer, &status));
-  Event("%s: %u readers, %u so far", who, status.current_count, status.total_count);
-}
-
-void TellWriters(const char* who, dds_entity_t reader) {
-  dds_subscription_matched_status_t status;
-  OK(dds_get_subscription_matched_status(reader, &status));
-  Event("%s: %u writers, %u so far", who, status.current_count, status.total_count);
 }
 
 void Writer(Process& self) {
