@@ -138,8 +138,12 @@ void ManyMessages() {
       "recvmmsg",
       [&] { EXPECT(sendmmsg(fds[1], messages, 2, 0) == 2, "sendmmsg: %s", strerror(errno)); },
       [&] {
-        EXPECT(recvmmsg(fds[0], messages, 3, MSG_WAITFORONE, nullptr) == 2, "recvmmsg: %s",
-               strerror(errno));
+        int got = recvmmsg(fds[0], messages, 3, MSG_WAITFORONE, nullptr);
+        // Natively, on another processor, the first is there before the second has been sent.
+        if (g_mode == Mode::kNative && got == 1) {
+          got += recvmmsg(fds[0], messages + 1, 1, 0, nullptr);
+        }
+        EXPECT(got == 2, "recvmmsg: %d, %s", got, strerror(errno));
       });
   EXPECT(messages[0].msg_len == 8 && messages[1].msg_len == 8, "lengths");
   EXPECT(sendmmsg(fds[1], messages, 0, 0) == 0, "sendmmsg of nothing: %s", strerror(errno));
