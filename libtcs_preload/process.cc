@@ -18,6 +18,7 @@
 #include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
+#include "libtcs_preload/shown_usage.h"
 #include "libtcs_preload/signal_actions.h"
 #include "libtcs_preload/spawn.h"
 #include "libtcs_preload/user_memory.h"
@@ -60,6 +61,12 @@ long WaitForChild(GuestThread& t, pid_t which, int options, Probe probe) {
   }
 }
 
+// Of a child that has ended: what was charged instead of what the host has measured.
+void ShowChildUsage(GuestThread& t, pid_t child, rusage* usage) {
+  const Reply reply = Exchange(t, Request{.kind = NotificationKind::kChildUsage, .args = {child}});
+  if (reply.values[0] >= 0) ChargeInsteadOfMeasure(usage, reply.values[0]);
+}
+
 // 0 or an errno.
 int OpenPidfd(pid_t child, int* pidfd) {
   const long opened = RawSyscall(SYS_pidfd_open, child, 0);
@@ -100,14 +107,26 @@ TCS_EXPORT pid_t vfork(void) noexcept { return fork(); }
 
 TCS_EXPORT pid_t wait4(pid_t pid, int* status, int options, rusage* usage) {
   const Entered t;
-  if (t == nullptr || (options & WNOHANG) != 0) {
-    if (t != nullptr) HoldForRead(*t);
+  if (t == nullptr) {
     return static_cast<pid_t>(
         ToErrno(RawSyscall(SYS_wait4, pid, Arg(status), options, Arg(usage))));
   }
-  return static_cast<pid_t>(ToErrno(WaitForChild(*t, pid, options, [&] {
-    return RawSyscall(SYS_wait4, pid, Arg(status), options | WNOHANG, Arg(usage));
-  })));
+  int found_status = 0;
+  const auto probe = [&] {
+    return RawSyscall(SYS_wait4, pid, Arg(&found_status), options | WNOHANG, Arg(usage));
+  };
+  long found;
+  if ((options & WNOHANG) != 0) {
+    HoldForRead(*t);
+    found = probe();
+  } else {
+    found = WaitForChild(*t, pid, options, probe);
+  }
+  if (found > 0 && usage != nullptr && (WIFEXITED(found_status) || WIFSIGNALED(found_status))) {
+    ShowChildUsage(*t, static_cast<pid_t>(found), usage);
+  }
+  if (found > 0 && status != nullptr && !CopyOut(status, found_status)) return Fail(EFAULT);
+  return static_cast<pid_t>(ToErrno(found));
 }
 
 TCS_EXPORT pid_t wait3(int* status, int options, rusage* usage) {

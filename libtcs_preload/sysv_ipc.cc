@@ -1,6 +1,8 @@
-// System V semaphores and message queues. The kernel cannot poll them, so it is only asked for what
-// it can do at once; where that is nothing, the thread waits until somebody has changed the object.
-// Whoever does tells the coordinator, if anybody waits.
+// System V semaphores and message queues. The kernel is asked for what it can do at once; where
+// that is nothing it holds the thread, counts it among those who wait, keeps their order, and gives
+// a thread what it waits for in the very call of another that makes it possible. Only waits with a
+// deadline are not the kernel's, whose time is the host's: there the thread waits until somebody
+// has changed the object. Whoever does tells the coordinator, if anybody waits.
 #include <errno.h>
 #include <stdarg.h>
 #include <string.h>
@@ -12,6 +14,7 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/ipc_times.h"
+#include "libtcs_preload/kernel_wait.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/receipts.h"
@@ -30,15 +33,34 @@ namespace {
 constexpr int kWouldWait = 4096;              // no errno
 constexpr std::size_t kMostOperations = 500;  // the kernel's SEMOPM; above it says E2BIG
 
-// Makes `call`, which returns -`blocks` where it would have to wait, until it need not. What it
-// reads and changes has a place in time, so nothing from before may be missing.
+// The object may be what those wait for whom the kernel holds, and those who wait here.
+void TellOfChange(GuestThread& t, WaitKey kind, int id) {
+  TellKernelWaiters(t);
+  TellChanged(t, kind, id);
+}
+
+// Makes `at_once`, which returns -`blocks` where it would have to wait, and then `waiting`, the
+// same call in the form that waits. What it reads and changes has a place in time, so nothing from
+// before may be missing.
+template <class AtOnce, class Waiting>
+long CallInKernel(GuestThread& t, WaitKey kind, int id, int blocks, bool cancellable,
+                  AtOnce at_once, Waiting waiting) {
+  HoldForRead(t);
+  long result = at_once();
+  if (result == -blocks && !IsShutDown()) result = WaitInKernel(t, cancellable, waiting);
+  if (result >= 0) TellOfChange(t, kind, id);
+  return result == -blocks ? -EINTR : result;
+}
+
+// Makes `call`, which returns -`blocks` where it would have to wait, until it need not, or until
+// the deadline.
 template <class Call>
-long WaitAndCall(GuestThread& t, WaitKey kind, int id, int blocks, std::int64_t deadline_ns,
-                 Call call) {
+long CallUntil(GuestThread& t, WaitKey kind, int id, int blocks, std::int64_t deadline_ns,
+               Call call) {
   HoldForRead(t);
   for (bool again = false;; again = true) {
     const long result = call();
-    if (result >= 0) TellChanged(t, kind, id);
+    if (result >= 0) TellOfChange(t, kind, id);
     if (again && result == -EINVAL) return -EIDRM;
     if (result != -blocks) return result;
     if (IsShutDown()) return -EINTR;
@@ -51,7 +73,7 @@ long WaitAndCall(GuestThread& t, WaitKey kind, int id, int blocks, std::int64_t 
     if (reply.reason == WakeReason::kSignal) return -EINTR;
     if (reply.reason == WakeReason::kDeadline) {
       const long last = call();
-      if (last >= 0) TellChanged(t, kind, id);
+      if (last >= 0) TellOfChange(t, kind, id);
       return last;
     }
   }
@@ -85,13 +107,21 @@ long Operate(GuestThread& t, int id, sembuf* operations, std::size_t count, cons
     some |= (operations[i].sem_flg & IPC_NOWAIT) != 0;
     at_once[i].sem_flg = static_cast<short>(operations[i].sem_flg | IPC_NOWAIT);
   }
-  const std::int64_t deadline =
-      given != nullptr ? DeadlineAfter(t, ToNs(timeout)) : tcs::shm::kNeverNs;
-  const long result = WaitAndCall(t, WaitKey::kSemaphores, id, kWouldWait, deadline, [&]() -> long {
-    const long done = RawSyscall(SYS_semop, id, Arg(at_once), static_cast<long>(count));
+  const auto noted = [&](long done) {
     if (done >= 0) NoteIpc(t, IpcKind::kSemaphores, id, IpcEvent::kPut);
+    return done;
+  };
+  const auto probe = [&]() -> long {
+    const long done = noted(RawSyscall(SYS_semop, id, Arg(at_once), static_cast<long>(count)));
     return done == -EAGAIN && !(some && MustNotWait(id, operations, count)) ? -kWouldWait : done;
-  });
+  };
+  if (given == nullptr) {
+    return CallInKernel(t, WaitKey::kSemaphores, id, kWouldWait, false, probe, [&] {
+      return noted(RawSyscall(SYS_semop, id, Arg(operations), static_cast<long>(count)));
+    });
+  }
+  const long result =
+      CallUntil(t, WaitKey::kSemaphores, id, kWouldWait, DeadlineAfter(t, ToNs(timeout)), probe);
   return result == -kWouldWait ? -EAGAIN : result;
 }
 
@@ -139,11 +169,11 @@ TCS_EXPORT int semctl(int id, int number, int command, ...) noexcept {
     case SETVAL:
     case SETALL:
       NoteIpc(*t, IpcKind::kSemaphores, id, IpcEvent::kChanged);
-      TellChanged(*t, WaitKey::kSemaphores, id);
+      TellOfChange(*t, WaitKey::kSemaphores, id);
       break;
     case IPC_RMID:
       ForgetIpc(*t, IpcKind::kSemaphores, id);
-      TellChanged(*t, WaitKey::kSemaphores, id);
+      TellOfChange(*t, WaitKey::kSemaphores, id);
       break;
     default:
       break;
@@ -158,13 +188,15 @@ TCS_EXPORT int msgsnd(int id, const void* message, std::size_t size, int flags) 
   };
   if (t == nullptr) return static_cast<int>(ToErrno(call(flags)));
   const int blocks = (flags & IPC_NOWAIT) != 0 ? kWouldWait : EAGAIN;
-  return static_cast<int>(
-      ToErrno(WaitAndCall(*t, WaitKey::kMessages, id, blocks, tcs::shm::kNeverNs, [&] {
-        const long sent = call(flags | IPC_NOWAIT);
-        if (sent >= 0) NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kPut);
-        if (sent >= 0) NoteSent(*t);
-        return sent;
-      })));
+  const auto send = [&](int with) {
+    const long sent = call(with);
+    if (sent >= 0) NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kPut);
+    if (sent >= 0) NoteSent(*t);
+    return sent;
+  };
+  return static_cast<int>(ToErrno(CallInKernel(
+      *t, WaitKey::kMessages, id, blocks, true, [&] { return send(flags | IPC_NOWAIT); },
+      [&] { return send(flags); })));
 }
 
 TCS_EXPORT ssize_t msgrcv(int id, void* message, std::size_t size, long type, int flags) {
@@ -174,15 +206,18 @@ TCS_EXPORT ssize_t msgrcv(int id, void* message, std::size_t size, long type, in
   };
   if (t == nullptr) return ToErrno(call(flags));
   const int blocks = (flags & IPC_NOWAIT) != 0 ? kWouldWait : ENOMSG;
-  return ToErrno(WaitAndCall(*t, WaitKey::kMessages, id, blocks, tcs::shm::kNeverNs, [&] {
-    const long got = call(flags | IPC_NOWAIT);
+  const auto receive = [&](int with) {
+    const long got = call(with);
     // A copy leaves the queue as it is.
     if (got >= 0 && (flags & MSG_COPY) == 0) {
       NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kTaken);
       NoteReceived(*t);
     }
     return got;
-  }));
+  };
+  return ToErrno(CallInKernel(
+      *t, WaitKey::kMessages, id, blocks, true, [&] { return receive(flags | IPC_NOWAIT); },
+      [&] { return receive(flags); }));
 }
 
 TCS_EXPORT int msgctl(int id, int command, msqid_ds* buffer) noexcept {
@@ -196,6 +231,6 @@ TCS_EXPORT int msgctl(int id, int command, msqid_ds* buffer) noexcept {
   }
   if (command == IPC_SET) NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kChanged);
   if (command == IPC_RMID) ForgetIpc(*t, IpcKind::kMessages, id);
-  if (command == IPC_RMID || command == IPC_SET) TellChanged(*t, WaitKey::kMessages, id);
+  if (command == IPC_RMID || command == IPC_SET) TellOfChange(*t, WaitKey::kMessages, id);
   return static_cast<int>(ToErrno(result));
 }

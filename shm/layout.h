@@ -108,6 +108,8 @@ enum class NotificationKind : std::uint32_t {
   kReaches = 36,  // the thread is about to reach a local socket of robot args[0], from another one
                   // or with a descriptor that leaves its own: go on as with kWrite, and once that
                   // robot has looked for the last time without waiting for others
+  kChildUsage = 38,  // args[0]: pid of a child that has ended; reply[0]: what it and its own
+                     // children were charged, ns; -1: not known
 };
 
 // The signal by which the coordinator stops a thread that computes, where only gates keep threads

@@ -1,5 +1,7 @@
 #include "coordinator/calls/follow_ups.h"
 
+#include "coordinator/calls/raw_ipc.h"
+
 namespace tcs {
 
 void FollowUps::Do(Task& task, Moment call, bool last) {
@@ -26,6 +28,12 @@ void FollowUps::Do(Task& task, Moment call, bool last) {
     case FollowUp::kKernelWaits:
       objects_.LookAtKernelWaits(call);
       break;
+    case FollowUp::kObjects: {
+      objects_.LookAtKernelWaits(call);
+      const KernelObject object = RawIpc::ObjectOf(task.trapped_call);
+      objects_.Wake(object.kind, object.id, call);
+      break;
+    }
     case FollowUp::kTerminals:
       objects_.FlushTerminals(call);
       break;

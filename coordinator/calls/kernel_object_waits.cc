@@ -3,14 +3,33 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "coordinator/calls/raw_semaphores.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
+
+namespace {
+
+// The kernel has let the thread go on: it is on its way, or where it runs although it is not
+// dispatched, at its gate already.
+bool HasComeBack(const Task& task) {
+  if (ThreadState(task.tid) == 'R') return true;
+  return task.slot >= 0 && !task.parked && SlotOf(task).gate.load() != shm::kGateOpen;
+}
+
+bool StillWaits(const Task& task) { return WouldWaitForSemaphores(task, task.trapped_call); }
+
+}  // namespace
 
 void KernelObjectWaits::Wait(Task& task, const shm::Notification& note, VirtualTime deadline) {
   const KernelObject object{.kind = note.args[0], .id = note.args[1]};
   objects_.Wait(task.order, object, note.args[2] != 0);
   waker_.Wait(task, {awaited::Queue{object}, deadline});
+}
+
+void KernelObjectWaits::WaitInCall(Task& task, const KernelObject& object, VirtualTime deadline) {
+  objects_.Wait(task.order, object, false);
+  waker_.Wait(task, {awaited::Queue{object}, deadline, true});
 }
 
 bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, Moment moment) {
@@ -22,18 +41,25 @@ bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, Moment moment) 
     return LookAtKernelWaits(moment);
   }
   const std::vector<WaitQueues::Thread> waiters = objects_.WaitersFor({.kind = kind, .id = id});
+  bool has_let_one_go = false, found = false;
   // A nanosecond apart, so that they try in this order on whatever cores they are.
   for (const WaitQueues::Thread thread : waiters) {
-    waker_.Wake(run_.table.At(thread), shm::WakeReason::kGo, moment);
+    Task& task = run_.table.At(thread);
+    // The kernel would hold those for which nothing is left, and end their waits in its own time.
+    const bool is_in_call = task.wait.has_value() && task.wait->is_in_trapped_call;
+    if (is_in_call && (has_let_one_go || StillWaits(task))) continue;
+    has_let_one_go |= is_in_call;
+    found = true;
+    waker_.Wake(task, shm::WakeReason::kGo, moment);
     moment.at += VirtualNs(1);
   }
-  return !waiters.empty();
+  return found;
 }
 
 bool KernelObjectWaits::LookAtKernelWaits(Moment moment) {
   bool found = false;
   for (Task& task : run_.table.tasks()) {
-    if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
+    if (task.state != TaskState::kUnseen || !HasComeBack(task)) continue;
     waker_.Wake(task, shm::WakeReason::kGo, moment);
     task.parked = false;
     found = true;
@@ -59,6 +85,7 @@ void KernelObjectWaits::FlushTerminals(Moment moment) {
 }
 
 void KernelObjectWaits::WakeAll(Moment moment) {
+  LookAtKernelWaits(moment);
   for (const KernelObject& object : objects_.AwaitedObjects()) {
     Wake(object.kind, object.id, moment);
   }

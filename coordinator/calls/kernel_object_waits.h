@@ -23,6 +23,8 @@ class KernelObjectWaits {
 
   // As the notification kWaitKey says.
   void Wait(Task& task, const shm::Notification& note, VirtualTime deadline);
+  // The same for a call made raw, which the kernel carries out once it need not wait.
+  void WaitInCall(Task& task, const KernelObject& object, VirtualTime deadline);
   // The thread waits no longer.
   void Leave(const Task& task) { objects_.Leave(task.order); }
   // It has ended.

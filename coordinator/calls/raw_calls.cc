@@ -6,6 +6,7 @@
 #include "coordinator/calls/raw_draws.h"
 #include "coordinator/calls/signal_reach.h"
 #include "coordinator/os/landlock.h"
+#include "shm/clock_ids.h"
 
 namespace tcs {
 
@@ -48,6 +49,19 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
   task.trapped_call = call;
   switch (call.number) {
     case SYS_clock_gettime:
+      task.trap_result = shm::ClockOf(static_cast<clockid_t>(call.args[0])).IsOfCpu()
+                             ? parts_.usage.ReadClock(task, call)
+                             : parts_.times.ReadClock(task, call);
+      break;
+    case SYS_getrusage:
+      task.trap_result = RawUsage::GetUsage(task, call);
+      break;
+    case SYS_times:
+      task.trap_result = parts_.usage.Times(task, call);
+      break;
+    case SYS_sysinfo:
+      task.trap_result = parts_.usage.SystemInfo(task, call);
+      break;
     case SYS_gettimeofday:
     case SYS_time:
       task.trap_result = parts_.times.ReadClock(task, call);
@@ -138,6 +152,21 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
       } else {
         Lock(task);
       }
+      break;
+    case SYS_semop:
+    case SYS_semtimedop:
+    case SYS_semctl:
+    case SYS_msgsnd:
+    case SYS_msgrcv:
+    case SYS_msgctl:
+      parts_.ipc.OfSystemV(task, call);
+      break;
+    case SYS_mq_timedsend:
+    case SYS_mq_timedreceive:
+      parts_.ipc.Queue(task, call);
+      break;
+    case SYS_rt_sigtimedwait:
+      parts_.ipc.AcceptSignal(task, call);
       break;
     case SYS_bind:
       task.trap_continues = true;

@@ -11,11 +11,13 @@
 #include "coordinator/calls/futex_words.h"
 #include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/raw_child_waits.h"
+#include "coordinator/calls/raw_ipc.h"
 #include "coordinator/calls/raw_polls.h"
 #include "coordinator/calls/raw_scheduling.h"
 #include "coordinator/calls/raw_timers.h"
 #include "coordinator/calls/raw_times.h"
 #include "coordinator/calls/raw_transfers.h"
+#include "coordinator/calls/raw_usage.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/tasks/waker.h"
 
@@ -25,11 +27,13 @@ class RawCalls {
  public:
   struct Parts {
     RawTimes& times;
+    RawUsage& usage;
     RawTimers& timers;
     RawPolls& polls;
     RawTransfers& transfers;
     RawChildWaits& children;
     RawScheduling& scheduling;
+    RawIpc& ipc;
     FutexWords& words;
     LocalSockets& local_sockets;
   };

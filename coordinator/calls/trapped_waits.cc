@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "coordinator/calls/raw_ipc.h"
 #include "coordinator/calls/raw_polls.h"
+#include "coordinator/calls/raw_semaphores.h"
 #include "coordinator/calls/raw_transfers.h"
 #include "coordinator/tasks/client_values.h"
 
@@ -17,6 +19,8 @@ void TrappedWaits::Interrupt(Task& task) {
   task.trap_continues = false;
   task.trap_result =
       wait.deadline.IsNever() ? -by_signal::kAsFlagsSay : -by_signal::kAgainUnlessRun;
+  // What accepts signals is not made again for others.
+  if (wait.As<awaited::Signals>() != nullptr) task.trap_result = -by_signal::kAgainUnlessRun;
   if (const auto* futex = wait.As<awaited::Futex>(); futex != nullptr) {
     // A lock is never given up for a signal: the C library would take it for acquired.
     if (futex->owner != awaited::kNobody || words_.table().ExpectedLock(task.order).has_value()) {
@@ -43,6 +47,17 @@ void TrappedWaits::Finish(Task& task, shm::WakeReason reason) {
   if (const auto* child = task.Awaits<awaited::Child>(); child != nullptr && child->stops) {
     children_.ForgetNews(*task.process);
   }
+  if (const auto* queue = task.Awaits<awaited::Queue>(); queue != nullptr && !timed_out) {
+    if (!AreSemaphores(static_cast<int>(queue->of.id))) {
+      task.trap_continues = false;
+      task.trap_result = -EIDRM;  // they were there when it began to wait
+    }
+  }
+  if (timed_out &&
+      (task.Awaits<awaited::Queue>() != nullptr || task.Awaits<awaited::Signals>() != nullptr)) {
+    task.trap_continues = false;
+    task.trap_result = RawIpc::ResultAtDeadline(task.trapped_call);
+  }
   const auto* watched = task.Awaits<awaited::Descriptors>();
   if (watched == nullptr) return;
   if (!timed_out) {
@@ -52,7 +67,7 @@ void TrappedWaits::Finish(Task& task, shm::WakeReason reason) {
   }
   task.trap_continues = false;
   if (watched->transfers) {
-    task.trap_result = -EAGAIN;
+    task.trap_result = RawIpc::ResultAtDeadline(task.trapped_call);
   } else {
     RawPolls::ClearResult(task, task.trapped_call);
   }

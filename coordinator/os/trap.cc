@@ -32,11 +32,12 @@ using filter::Load;
 using filter::LoadArgument;
 using filter::Return;
 
-// Besides futex and clock_gettime, which depend on their arguments, and those whose mark is
-// elsewhere.
+// Besides futex, which depends on its arguments, and those whose mark is elsewhere.
 constexpr std::uint32_t kTrapped[] = {
     // Clocks and sleeps.
-    SYS_gettimeofday, SYS_time, SYS_nanosleep, SYS_clock_nanosleep,
+    SYS_clock_gettime, SYS_gettimeofday, SYS_time, SYS_nanosleep, SYS_clock_nanosleep,
+    // What was charged, and since when the computer is on.
+    SYS_getrusage, SYS_times, SYS_sysinfo,
     // What waits for descriptors and for children.
     SYS_read, SYS_readv, SYS_write, SYS_writev, SYS_poll, SYS_ppoll, SYS_select, SYS_pselect6,
     SYS_epoll_wait, SYS_epoll_pwait, SYS_epoll_pwait2, SYS_wait4, SYS_waitid, SYS_recvmsg,
@@ -62,6 +63,9 @@ constexpr std::uint32_t kTrapped[] = {
     SYS_alarm,
     // Locks of files.
     SYS_flock,
+    // Semaphores, queues, and signals that are accepted.
+    SYS_semop, SYS_semtimedop, SYS_semctl, SYS_msgsnd, SYS_msgrcv, SYS_msgctl, SYS_mq_timedsend,
+    SYS_mq_timedreceive, SYS_rt_sigtimedwait,
     // Several futexes at once.
     SYS_futex_waitv};
 
@@ -145,13 +149,6 @@ std::vector<sock_filter> NativeProgram(const Numbers& numbers) {
       JumpIfEqual(shm::kOwnCallMark, 0, 1),
       allow,
       trap,
-      JumpIfEqual(SYS_clock_gettime, 0, 5),
-      LoadArgument(0),
-      JumpIfEqual(CLOCK_PROCESS_CPUTIME_ID, 2, 0),
-      JumpIfEqual(CLOCK_THREAD_CPUTIME_ID, 1, 0),
-      // Negative numbers are processor clocks, too, of some process or thread.
-      {BPF_JMP | BPF_JGE | BPF_K, 0, static_cast<std::uint8_t>(count + 2), 1u << 31},
-      allow,
   };
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_marked = i < numbers.others.size();

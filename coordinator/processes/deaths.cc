@@ -88,7 +88,10 @@ void Deaths::ProcessEnded(std::uint32_t index, Moment moment) {
   process.pidfd.Reset();
   if (process.link != nullptr) ended_links_.push_back(std::move(process.link));
   if (Process* parent = run_.table.LivingProcess(process.parent); parent != nullptr) {
-    parent->children_cpu += VirtualNs(process.ended.usage().charged_ns) + process.children_cpu;
+    const VirtualDuration charged =
+        VirtualNs(process.ended.usage().charged_ns) + process.children_cpu;
+    parent->children_cpu += charged;
+    parent->ended_children.Ended(process.pid, charged.ns());
     listeners_.child_has_ended(*parent, process.pid, moment);
   }
   listeners_.process_has_ended(process, moment);

@@ -21,6 +21,7 @@
 #include "coordinator/policy/robot_scheduler.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/queues/process_timers.h"
+#include "coordinator/tasks/ended_children.h"
 #include "coordinator/tasks/process_link.h"
 #include "coordinator/tasks/program_clock.h"
 #include "coordinator/tasks/task_state.h"
@@ -35,7 +36,16 @@
 namespace tcs {
 
 // Whom a trapped call concerns that the kernel carries out (follow_ups.cc).
-enum class FollowUp { kNone, kBacklogs, kTaken, kSignals, kKernelWaits, kContinued, kTerminals };
+enum class FollowUp {
+  kNone,
+  kBacklogs,
+  kTaken,
+  kSignals,
+  kKernelWaits,
+  kObjects,
+  kContinued,
+  kTerminals
+};
 
 struct ClientSpec;
 struct Process;
@@ -163,6 +173,7 @@ struct Process {
   EndedThreads ended;  // and how many periodic expiries found nobody waiting
   Usage descendants;   // of processes that have ended and descended from this client
   VirtualDuration children_cpu;
+  EndedChildren ended_children;
   std::int64_t children_changed = 0;  // how often one ended, stopped or went on
   bool stopped = false;               // by a signal, when last looked at
   // As long as its parent may not have been told.

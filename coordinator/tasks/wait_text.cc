@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <sys/epoll.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
+#include <utility>
 
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
@@ -39,6 +42,21 @@ std::string TextOf(const KernelObject& object) {
   return "for room in a listener's backlog";
 }
 
+// What the kernel holds the thread for, as far as the system call says it.
+std::string TextOfKernelWait(const std::string& call) {
+  constexpr std::pair<int, const char*> kWaits[] = {
+      {SYS_semop, "waits for a System V semaphore"},
+      {SYS_semtimedop, "waits for a System V semaphore"},
+      {SYS_msgsnd, "waits for room in a System V message queue"},
+      {SYS_msgrcv, "waits for a message at a System V message queue"},
+      {SYS_flock, "waits for a lock of a file"},
+      {SYS_fcntl, "waits for a lock of a file"}};
+  for (const auto& [number, text] : kWaits) {
+    if (call == std::to_string(number)) return text;
+  }
+  return fmt::format("is in system call {}, whose end only the kernel knows", call);
+}
+
 // The descriptors as the program numbers them, as far as it has said so.
 std::string DescriptorsOf(const Task& task, const awaited::Descriptors& wait) {
   const bool raw = task.wait->is_in_trapped_call;
@@ -63,8 +81,7 @@ WaitText TextOfWait(const Task& task, bool has_child) {
     return {0, "is stopped by a signal (SIGCONT lets it go on)"};
   }
   if (task.state == TaskState::kUnseen) {
-    return {1, fmt::format("is in system call {}, whose end only the kernel knows",
-                           ThreadSystemCall(task.tid))};
+    return {1, TextOfKernelWait(ThreadSystemCall(task.tid))};
   }
   if (task.state == TaskState::kStarting) return {8, "is being started"};
   if (task.state != TaskState::kWaiting) return {9, "is about to act"};

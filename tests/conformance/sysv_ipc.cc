@@ -106,6 +106,31 @@ void SemaphoreOrder(int id) {
   for (const pid_t child : children) waitpid(child, nullptr, 0);
 }
 
+// Who unlocks and locks again at once finds the lock given to the one who has waited for it.
+void HandsOver(int id) {
+  Must(semctl(id, 0, SETVAL, 1));
+  Must(Operate(id, 0, -1));
+  const pid_t waiter = fork();
+  if (waiter == 0) {
+    Must(Operate(id, 0, -1));
+    Must(Operate(id, 1, 1));  // says so
+    Must(Operate(id, 0, 1));
+    _exit(0);
+  }
+  // Counted by the kernel, which natively is how to know that it waits.
+  while (semctl(id, 0, GETNCNT) != 1) usleep(1000);
+  int turns = 0;
+  while (semctl(id, 1, GETVAL) == 0) {
+    Must(Operate(id, 0, 1));
+    Must(Operate(id, 0, -1));
+    EXPECT(++turns < 3, "it waits after %d turns of another's", turns);
+  }
+  Must(Operate(id, 0, 1));
+  Must(Operate(id, 1, -1));
+  EXPECT(waitpid(waiter, nullptr, 0) == waiter, "waitpid");
+  Must(semctl(id, 0, SETVAL, 0));
+}
+
 void Messages(int id) {
   Message message{1, "hello"};
   EXPECT(msgrcv(id, &message, 8, 0, IPC_NOWAIT) == -1 && errno == ENOMSG, "%s", strerror(errno));
@@ -200,6 +225,7 @@ int main(int argc, char** argv) {
   SemaphoreDeadlines(semaphores);
   SemaphoreWaits(semaphores);
   SemaphoreOrder(semaphores);
+  HandsOver(semaphores);
   Messages(messages);
   Interruptions(semaphores, messages);
   Removal(semaphores, messages);

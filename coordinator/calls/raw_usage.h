@@ -1,0 +1,32 @@
+// What threads ask of the processor time that was charged, and of the computer's uptime, by calls
+// made raw. Results are the kernel's: negative for an errno.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+
+#include "coordinator/os/trap.h"
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+class RawUsage {
+ public:
+  explicit RawUsage(RunState& run) : run_(run) {}
+
+  // clock_gettime of a clock of processor time, the caller's or another's.
+  std::int64_t ReadClock(Task& task, const TrappedCall& call) const;
+  // getrusage. What was charged is divided into user and system time as the kernel divides it.
+  static std::int64_t GetUsage(const Task& task, const TrappedCall& call);
+  std::int64_t Times(const Task& task, const TrappedCall& call) const;
+  // sysinfo: the host's, with the robot's uptime.
+  std::int64_t SystemInfo(const Task& task, const TrappedCall& call) const;
+
+ private:
+  std::int64_t UptimeNs(const Task& task) const;
+
+  RunState& run_;
+};
+
+}  // namespace tcs
