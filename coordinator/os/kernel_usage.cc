@@ -1,6 +1,5 @@
 #include "coordinator/os/kernel_usage.h"
 
-#include <fmt/format.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,6 +18,8 @@ struct Faults {
   long long own_minor = 0, children_minor = 0, own_major = 0, children_major = 0;
   long long user = 0, system = 0, children_user = 0, children_system = 0;
 };
+
+std::string ProcFolder(pid_t pid) { return "/proc/" + std::to_string(pid); }
 
 std::string WholeFile(const std::string& path) {
   std::ifstream file(path);
@@ -61,21 +62,22 @@ KernelUsage UsageIn(const std::string& folder) {
 }  // namespace
 
 KernelUsage KernelUsageOfProcess(pid_t pid) {
-  const std::string folder = fmt::format("/proc/{}", pid);
+  const std::string folder = ProcFolder(pid);
   KernelUsage usage = UsageIn(folder);
-  for (const pid_t tid : ThreadsOf(pid)) AddSwitches(fmt::format("{}/task/{}", folder, tid), usage);
+  for (const pid_t tid : ThreadsOf(pid))
+    AddSwitches(folder + "/task/" + std::to_string(tid), usage);
   return usage;
 }
 
 KernelUsage KernelUsageOfThread(pid_t pid, pid_t tid) {
-  const std::string folder = fmt::format("/proc/{}/task/{}", pid, tid);
+  const std::string folder = ProcFolder(pid) + "/task/" + std::to_string(tid);
   KernelUsage usage = UsageIn(folder);
   AddSwitches(folder, usage);
   return usage;
 }
 
 KernelUsage KernelUsageOfChildren(pid_t pid) {
-  const Faults stat = ReadStat(fmt::format("/proc/{}", pid));
+  const Faults stat = ReadStat(ProcFolder(pid));
   return {.user_ticks = stat.children_user,
           .system_ticks = stat.children_system,
           .minor_faults = stat.children_minor,
