@@ -26,11 +26,18 @@ constexpr const char* kWrong = "datagrams that cannot be";
 constexpr std::size_t kMostOnTheWay = 4096;
 // Who sends to ever other addresses is not followed beyond that.
 constexpr std::size_t kMostAddresses = 4096;
+// The kind of an address, beyond the numbers of robots.
+constexpr std::uint64_t kInternet = std::uint64_t{1} << 32;
 
 // Of an address of the internet: the host and the port.
 struct Internet {
   in_addr host;
   std::uint16_t port;
+  bool is_any = false;  // of all of this computer's, which the loopback interface's stands for
+  bool IsMulticast() const {
+    const in_addr_t address = ntohl(host.s_addr);
+    return IN_MULTICAST(address) || address == INADDR_BROADCAST;
+  }
 };
 
 std::optional<Internet> InternetOf(const DatagramNotes::Note& note) {
@@ -38,9 +45,9 @@ std::optional<Internet> InternetOf(const DatagramNotes::Note& note) {
   if (note.size > sizeof address) return std::nullopt;
   memcpy(&address, note.bytes, note.size);
   if (address.sin_family != AF_INET) return std::nullopt;
-  // Whoever listens on all addresses is reached by this one.
-  if (address.sin_addr.s_addr == INADDR_ANY) address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return Internet{address.sin_addr, ntohs(address.sin_port)};
+  const bool is_any = address.sin_addr.s_addr == INADDR_ANY;
+  if (is_any) address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return Internet{address.sin_addr, ntohs(address.sin_port), is_any};
 }
 
 // A part of a name that is another one in each run: ${run} of a scenario.
@@ -80,12 +87,15 @@ DatagramQueues::DatagramQueues(RunState& run, AnswerFeed& answers, DatagramLog& 
     sensors_[run.scenario.sensors[i].name] = i;
 }
 
+DatagramQueues::Address DatagramQueues::AddressAt(std::uint32_t host, std::uint16_t port) {
+  return {kInternet, std::uint64_t{host} << 16 | port};
+}
+
 // Addresses that mean the same are one; with a network abstract names are each robot's own.
 DatagramQueues::Address DatagramQueues::AddressOf(const Robot* by,
                                                   const DatagramNotes::Note& note) const {
-  constexpr std::uint64_t kInternet = std::uint64_t{1} << 32;  // beyond the numbers of robots
   if (const auto internet = InternetOf(note))
-    return {kInternet, std::uint64_t{internet->host.s_addr} << 16 | internet->port};
+    return AddressAt(internet->host.s_addr, internet->port);
   const std::size_t begin = offsetof(sockaddr_un, sun_path);
   const bool is_abstract = note.size > begin && note.bytes[begin] == 0;
   const std::uint32_t robot =
@@ -101,6 +111,38 @@ DatagramQueues::Queue* DatagramQueues::QueueTo(const Address& to) {
   const auto found = queues_.find(to);
   if (found != queues_.end()) return &found->second;
   return queues_.size() < kMostAddresses ? &queues_[to] : nullptr;
+}
+
+// Where it is looked for what was sent to the address: with what is sent to any address of this
+// computer, where a socket listens on all of them and none on this one alone.
+DatagramQueues::Address DatagramQueues::PlaceOf(const Address& to) const {
+  const auto port = static_cast<std::uint16_t>(to.second);
+  if (to.first != kInternet || !ports_of_all_.contains(port)) return to;
+  const auto found = queues_.find(to);
+  if (found != queues_.end() && found->second.has_reader) return to;
+  return AddressAt(htonl(INADDR_LOOPBACK), port);
+}
+
+// A socket listens at that port of all addresses: what was sent to whichever is its.
+void DatagramQueues::ListensOnAll(std::uint16_t port) {
+  if (!ports_of_all_.insert(port).second) return;
+  const Address place = AddressAt(htonl(INADDR_LOOPBACK), port);
+  Queue* all = QueueTo(place);
+  if (all == nullptr) return;
+  for (auto& [address, queue] : queues_) {
+    const bool is_at_port =
+        address.first == kInternet && static_cast<std::uint16_t>(address.second) == port;
+    if (!is_at_port || address == place || queue.has_reader) continue;
+    if (all->of_programs.empty()) all->of_programs = queue.of_programs;
+    for (const Flow& flow : queue.flows)
+      FlowOf(*all, flow.sender, flow.channel).input.sent += flow.input.sent;
+    for (Sent& sent : queue.waiting)
+      sent.flow = &FlowOf(*all, sent.flow->sender, sent.flow->channel);
+    std::ranges::move(queue.waiting, std::back_inserter(all->waiting));
+    queue.waiting.clear();
+    queue.flows.clear();
+  }
+  std::ranges::stable_sort(all->waiting, {}, &Sent::at);
 }
 
 DatagramQueues::Flow& DatagramQueues::FlowOf(Queue& queue, const std::string& sender,
@@ -140,7 +182,7 @@ void DatagramQueues::Add(Queue& queue, Sent sent) {
 
 void DatagramQueues::WorldSent(const std::string& channel, const shm::ReceiverAddress& to,
                                VirtualTime at) {
-  Queue* queue = QueueTo(AddressOf(nullptr, NoteOf(to)));
+  Queue* queue = QueueTo(PlaceOf(AddressOf(nullptr, NoteOf(to))));
   if (queue == nullptr) return;
   Flow& flow = FlowOfWorld(*queue, channel);
   Sent sent{.at = at, .flow = &flow};
@@ -252,10 +294,15 @@ const char* DatagramQueues::TakeNotes(const Task& task, VirtualTime until) {
       }
       continue;
     }
+    const auto internet = InternetOf(note);
     // Between robots of a network packets may be lost.
-    if (run_.scenario.network && InternetOf(note)) continue;
+    if (run_.scenario.network && internet) continue;
+    if (internet && internet->IsMulticast()) multicast_.insert(internet->port);
+    if (internet && multicast_.contains(internet->port)) continue;
+    if (note.what == DatagramNotes::What::kReceived && internet && internet->is_any)
+      ListensOnAll(internet->port);
     if (note.what == DatagramNotes::What::kSent) {
-      Queue* queue = QueueTo(address);
+      Queue* queue = QueueTo(PlaceOf(address));
       if (queue == nullptr) continue;
       if (queue->of_programs.empty()) queue->of_programs = TextOf(note);
       Sent sent{.at = at,
@@ -263,15 +310,15 @@ const char* DatagramQueues::TakeNotes(const Task& task, VirtualTime until) {
                 .flow = &FlowOf(*queue, name, queue->of_programs)};
       if (who.has_value())
         sent.lineage = answers_.chains().Sends(AnswerFeed::OnChain(*who), at.ns());
+      sent.flow->is_of_dds = !task.process->dds_endpoints;
       Add(*queue, std::move(sent));
       continue;
     }
-    const auto found = queues_.find(address);
-    if (found == queues_.end()) continue;
     if (note.what == DatagramNotes::What::kTakenBack) {
-      TakeBack(found->second, name);
-    } else {
-      Take(task, note, found->second, at);
+      const auto found = queues_.find(PlaceOf(address));
+      if (found != queues_.end()) TakeBack(found->second, name);
+    } else if (Queue* queue = QueueTo(address); queue != nullptr) {
+      Take(task, note, *queue, at);
     }
   }
   return nullptr;
@@ -305,6 +352,12 @@ std::vector<std::string> DatagramQueues::WhatNobodyHeard() const {
   std::vector<Heard> heard;
   const std::vector<std::string> names = answers_.NamesOfClients();
   for (const auto& [address, queue] : queues_) {
+    const auto port = static_cast<std::uint16_t>(address.second);
+    const bool is_elsewhere =  // or may be
+        address.first == kInternet &&
+        (ntohl(static_cast<std::uint32_t>(address.second >> 16)) >> IN_CLASSA_NSHIFT !=
+             IN_LOOPBACKNET ||
+         multicast_.contains(port));
     for (const Flow& flow : queue.flows) {
       // What the world sends to nobody is warned of (World::UnheardSensors).
       if (!answers_.WhoIs(flow.sender).has_value()) continue;
@@ -312,6 +365,7 @@ std::vector<std::string> DatagramQueues::WhatNobodyHeard() const {
         heard.push_back({names[static_cast<std::size_t>(queue.reader.client)], flow.channel});
         break;
       }
+      if (is_elsewhere || flow.is_of_dds) continue;
       if (flow.input.sent > 0) unheard.push_back({flow.sender, flow.channel, flow.input.sent});
     }
   }

@@ -5,14 +5,17 @@
 // Of each client it keeps what it was sent (answers/client_figures.h), and it tells the book of
 // answers what threads take and command, and the log of datagrams of both ends.
 //
-// What is not seen: raw calls, descriptors that somebody outside has made, multicast. For the
-// coordinator's thread only.
+// What is not seen: raw calls, descriptors that somebody outside has made, ports at which multicast
+// comes in, and whether somebody outside received what was sent to the address of an interface. By
+// DDS's own protocol participants look for each other where nobody may be. For the coordinator's
+// thread only.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,6 +59,7 @@ class DatagramQueues final : public DatagramWatch {
     std::string sender, channel;
     int sensor = -1;  // as AnswerBook::Taken has it
     std::int64_t period_ns = 0;
+    bool is_of_dds = false;  // of a program whose samples travel by DDS's own protocol
     InputFigures input{};
   };
   struct Sent {
@@ -75,6 +79,9 @@ class DatagramQueues final : public DatagramWatch {
   using Address = std::pair<std::uint64_t, std::uint64_t>;  // the kind, and whose; the rest
 
   Address AddressOf(const Robot* by, const shm::DatagramNotes::Note& note) const;
+  static Address AddressAt(std::uint32_t host, std::uint16_t port);
+  Address PlaceOf(const Address& to) const;
+  void ListensOnAll(std::uint16_t port);
   // Null: there are too many.
   Queue* QueueTo(const Address& to);
   static Flow& FlowOf(Queue& queue, const std::string& sender, const std::string& channel);
@@ -92,6 +99,8 @@ class DatagramQueues final : public DatagramWatch {
   SampleFeed* samples_ = nullptr;
   std::map<std::string, std::size_t> sensors_;  // places in the scenario
   std::map<Address, Queue> queues_;
+  std::set<std::uint16_t> ports_of_all_;  // at which sockets listen on all addresses
+  std::set<std::uint16_t> multicast_;  // ports to which something was sent that has many receivers
   std::map<Address, std::size_t> commands_;
 };
 

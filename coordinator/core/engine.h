@@ -73,6 +73,7 @@
 #include "coordinator/processes/launches.h"
 #include "coordinator/processes/registration.h"
 #include "coordinator/processes/registration_sockets.h"
+#include "coordinator/processes/ros_daemon.h"
 #include "coordinator/processes/run_records.h"
 #include "coordinator/processes/slot_check.h"
 #include "coordinator/processes/trap_listeners.h"
@@ -282,6 +283,7 @@ class Engine {
                                if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.at);
                              }};
   BarePrograms bare_programs_{run_};
+  RosDaemon ros_daemon_{run_};
   GuardedCalls guard_;
 
   // Who takes part: how threads and processes come, and how they go.

@@ -59,6 +59,7 @@ Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   }
   if (BeginsProgram(*call)) {
     bare_programs_.Begins(ProcessOfThread(call->tid));
+    ros_daemon_.Begins(ProcessOfThread(call->tid));
     guard_.LetThrough(*call);
     return {};
   }

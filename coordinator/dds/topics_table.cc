@@ -75,13 +75,21 @@ std::optional<std::string> FirstAt(const TopicReport& topic, EndpointKind kind) 
 std::optional<std::string> WhyApart(const TopicReport& topic, const std::string& reader,
                                     const TopicReport& other) {
   const auto writer = FirstAt(other, EndpointKind::kWriter);
-  if (!writer || other.domain != topic.domain) return std::nullopt;
+  if (!writer) return std::nullopt;
+  const bool is_ours = (reader == kSimulation) != (*writer == kSimulation);
+  if (other.domain != topic.domain) {
+    if (!is_ours || other.topic != topic.topic || other.type != topic.type) return std::nullopt;
+    return fmt::format(
+        "{}: {} reads it in domain {}, but {} writes it in domain {}, so no sample arrives; use "
+        "one "
+        "domain at both ends (ROS_DOMAIN_ID of programs, `domain` of channels)",
+        topic.topic, reader, topic.domain, *writer, other.domain);
+  }
   if (other.topic == topic.topic) {
     return fmt::format(
         "{}: {} reads {} there, but {} writes {}, so no sample arrives; use one type at both ends",
         topic.topic, reader, topic.type, *writer, other.type);
   }
-  const bool is_ours = (reader == kSimulation) != (*writer == kSimulation);
   if (!is_ours || other.type != topic.type || FirstAt(other, EndpointKind::kReader)) {
     return std::nullopt;
   }

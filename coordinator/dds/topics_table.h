@@ -17,7 +17,8 @@ namespace tcs::dds {
 [[nodiscard]] std::vector<std::string> TopicWarnings(const std::vector<TopicReport>& topics);
 
 // Of these, what keeps the two ends of a topic apart: readers that no writer suits, one name with
-// two types, and ends of the simulation and of a program that look like one topic with two names.
+// two types, and ends of the simulation and of a program that are in two domains, or that look like
+// one topic with two names.
 [[nodiscard]] std::vector<std::string> MismatchWarnings(const std::vector<TopicReport>& topics);
 
 }  // namespace tcs::dds

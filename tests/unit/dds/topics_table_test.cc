@@ -89,6 +89,22 @@ TEST(TopicWarnings, NameATopicOfTwoTypes) {
   EXPECT_THAT(TopicWarnings({written, read}), IsEmpty());
 }
 
+TEST(TopicWarnings, NameATopicOfTwoDomains) {
+  const EndpointReport ours{EndpointKind::kWriter, "tcsim", "", {}};
+  TopicReport written{"/odom", "nav_msgs/msg/Odometry"}, read = written;
+  written.endpoints = {ours};
+  read.domain = 42;
+  read.endpoints = {{EndpointKind::kReader, "hunter/planner", "hunter", {}}};
+  EXPECT_THAT(TopicWarnings({written, read}),
+              ElementsAre("/odom: hunter/planner reads it in domain 42, but tcsim writes it in "
+                          "domain 0, so no sample "
+                          "arrives; use one domain at both ends (ROS_DOMAIN_ID of programs, "
+                          "`domain` of channels)"));
+  // Programs that talk in domains of their own may mean to.
+  written.endpoints = {{EndpointKind::kWriter, "hunter/camera", "hunter", {}}};
+  EXPECT_THAT(TopicWarnings({written, read}), IsEmpty());
+}
+
 TEST(TopicWarnings, NameTwoTopicsThatLookLikeOne) {
   Qos all;
   all.history = History::kKeepAll;
