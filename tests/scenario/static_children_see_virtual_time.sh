@@ -15,7 +15,7 @@ expect_hour() {  # TCSIM EXPECTED [WHAT STANDS BEFORE IT...]
   local accounting how said
   for accounting in measured fixed; do
     for how in static static-pie; do
-      said=$(timeout 60 "${@:3}" "$1" exec --accounting $accounting -- sh -c "$work/$how; $work/$how")
+      said=$(timeout 150 "${@:3}" "$1" exec --accounting $accounting -- sh -c "$work/$how; $work/$how")
       [[ $said == "$2"$'\n'"$2" ]] || fail "$how, $accounting: an hour's sleep, seconds by each clock: $said"
     done
   done
@@ -23,19 +23,19 @@ expect_hour() {  # TCSIM EXPECTED [WHAT STANDS BEFORE IT...]
 expect_of() {  # PROGRAM EXPECTED: by each accounting, with rights and without
   local accounting said
   for accounting in measured fixed; do
-    said=$(timeout 60 "$tcsim" exec --accounting $accounting -- sh -c "$work/$1")
+    said=$(timeout 150 "$tcsim" exec --accounting $accounting -- sh -c "$work/$1")
     [[ $said == "$2" ]] || fail "$1, $accounting: $said"
-    said=$(timeout 60 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $accounting -- sh -c "$work/$1")
+    said=$(timeout 150 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $accounting -- sh -c "$work/$1")
     [[ $said == "$2" ]] || fail "$1, $accounting, without rights: $said"
   done
 }
 hour='3600 3600 3600 on 0'
 expect_hour "$tcsim" "$hour"
-said=$(timeout 60 "$tcsim" exec -- python3 -c "$by_vfork" "$work/static")
+said=$(timeout 150 "$tcsim" exec -- python3 -c "$by_vfork" "$work/static")
 [[ $said == "$hour" ]] || fail "of a vfork's child: $said"
 install_for_everybody "$build" "$work"
 expect_hour "$work/bin/tcsim" "$hour" "${nobody[@]}"
-said=$(timeout 60 "$tcsim" exec --no-patch-vdso -- sh -c "$work/static")
+said=$(timeout 150 "$tcsim" exec --no-patch-vdso -- sh -c "$work/static")
 [[ $said == [01]' 3600 '[01]* || $said == [01]' '[01]' '[01]* ]] || fail "unpatched: $said"
 
 # Threads of theirs, too; one computes while the other sleeps.
@@ -87,5 +87,5 @@ expect_of forks "100 100"
 # The name of its loader tells.
 cp /lib64/ld-linux-x86-64.so.2 "$work/ld-musl-x86_64.so.1"
 c++ -o "$work/of_musl" "$source_root/tests/programs/clock_teller.cc" -Wl,--dynamic-linker="$work/ld-musl-x86_64.so.1"
-timeout 60 "$tcsim" exec -- sh -c "$work/of_musl; true" >/dev/null 2>"$work/said"
+timeout 150 "$tcsim" exec -- sh -c "$work/of_musl; true" >/dev/null 2>"$work/said"
 grep -q "^tcsim: warning: $work/of_musl is linked against musl, .*rebuild it" "$work/said" || fail "of musl: $(cat "$work/said")"
