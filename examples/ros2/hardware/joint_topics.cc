@@ -33,21 +33,32 @@ JointTopics::CallbackReturn JointTopics::on_init(const hardware_interface::Hardw
                  info_.name.c_str(), name);
     return CallbackReturn::ERROR;
   }
-  const Values unknown = {kUnknown, kUnknown, kUnknown};
-  states_.assign(info_.joints.size(), unknown);
-  commands_.assign(info_.joints.size(), unknown);
-  for (std::size_t i = 0; i < kQuantities; ++i) {
-    commanded_[i] = !info_.joints.empty() && Has(info_.joints[0].command_interfaces, kNames[i]);
-    for (const auto& joint : info_.joints) {
-      if (Has(joint.command_interfaces, kNames[i]) == commanded_[i]) continue;
-      RCLCPP_ERROR(logger,
-                   "%s: give all joints the command interface %s, or none: one message has it for "
-                   "all of them",
-                   joint.name.c_str(), kNames[i]);
-      return CallbackReturn::ERROR;
+  joints_.clear();
+  for (const auto& joint : info_.joints) {
+    Interfaces& interfaces = joints_.emplace_back();
+    for (std::size_t i = 0; i < kQuantities; ++i) {
+      const std::string name = joint.name + "/" + kNames[i];
+      if (Has(joint.state_interfaces, kNames[i])) interfaces.states[i] = name;
+      if (Has(joint.command_interfaces, kNames[i])) interfaces.commands[i] = name;
     }
   }
-  return CallbackReturn::SUCCESS;
+  return AllCommandTheSame() ? CallbackReturn::SUCCESS : CallbackReturn::ERROR;
+}
+
+// One message has the commands of all joints: a list for each quantity, as long as the names, or
+// empty.
+bool JointTopics::AllCommandTheSame() const {
+  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+    for (std::size_t i = 0; i < kQuantities; ++i) {
+      if (joints_[joint].commands[i].empty() == joints_[0].commands[i].empty()) continue;
+      RCLCPP_ERROR(rclcpp::get_logger("JointTopics"),
+                   "%s: give all joints the command interface %s, or none: one message has it for "
+                   "all of them",
+                   info_.joints[joint].name.c_str(), kNames[i]);
+      return false;
+    }
+  }
+  return true;
 }
 
 JointTopics::CallbackReturn JointTopics::on_configure(const rclcpp_lifecycle::State&) {
@@ -62,31 +73,14 @@ JointTopics::CallbackReturn JointTopics::on_configure(const rclcpp_lifecycle::St
   return CallbackReturn::SUCCESS;
 }
 
+// What a controller commanded before counts no more.
 JointTopics::CallbackReturn JointTopics::on_activate(const rclcpp_lifecycle::State&) {
-  for (Values& command : commands_) command.fill(kUnknown);
+  for (const Interfaces& joint : joints_) {
+    for (const std::string& name : joint.commands) {
+      if (!name.empty()) set_command(name, kUnknown);
+    }
+  }
   return CallbackReturn::SUCCESS;
-}
-
-std::vector<hardware_interface::StateInterface> JointTopics::export_state_interfaces() {
-  std::vector<hardware_interface::StateInterface> interfaces;
-  for (std::size_t joint = 0; joint < states_.size(); ++joint) {
-    for (std::size_t i = 0; i < kQuantities; ++i) {
-      if (Has(info_.joints[joint].state_interfaces, kNames[i]))
-        interfaces.emplace_back(info_.joints[joint].name, kNames[i], &states_[joint][i]);
-    }
-  }
-  return interfaces;
-}
-
-std::vector<hardware_interface::CommandInterface> JointTopics::export_command_interfaces() {
-  std::vector<hardware_interface::CommandInterface> interfaces;
-  for (std::size_t joint = 0; joint < commands_.size(); ++joint) {
-    for (std::size_t i = 0; i < kQuantities; ++i) {
-      if (commanded_[i])
-        interfaces.emplace_back(info_.joints[joint].name, kNames[i], &commands_[joint][i]);
-    }
-  }
-  return interfaces;
 }
 
 hardware_interface::return_type JointTopics::read(const rclcpp::Time&, const rclcpp::Duration&) {
@@ -104,9 +98,10 @@ void JointTopics::Take(const JointState& state) {
         std::find_if(info_.joints.begin(), info_.joints.end(),
                      [&](const auto& known) { return known.name == state.name[place]; });
     if (joint == info_.joints.end()) continue;
-    Values& values = states_[joint - info_.joints.begin()];
+    const Interfaces& interfaces = joints_[joint - info_.joints.begin()];
     for (std::size_t i = 0; i < kQuantities; ++i) {
-      if (place < lists[i]->size()) values[i] = (*lists[i])[place];
+      if (place < lists[i]->size() && !interfaces.states[i].empty())
+        set_state(interfaces.states[i], (*lists[i])[place]);
     }
   }
 }
@@ -118,12 +113,12 @@ hardware_interface::return_type JointTopics::write(const rclcpp::Time& time,
   const std::array<std::vector<double>*, kQuantities> lists = {&wanted.position, &wanted.velocity,
                                                                &wanted.effort};
   bool all_known = true;
-  for (std::size_t joint = 0; joint < commands_.size(); ++joint) {
+  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
     wanted.name.push_back(info_.joints[joint].name);
     for (std::size_t i = 0; i < kQuantities; ++i) {
-      if (!commanded_[i]) continue;
-      lists[i]->push_back(commands_[joint][i]);
-      all_known = all_known && std::isfinite(commands_[joint][i]);
+      if (joints_[joint].commands[i].empty()) continue;
+      lists[i]->push_back(get_command(joints_[joint].commands[i]));
+      all_known = all_known && std::isfinite(lists[i]->back());
     }
   }
   if (all_known && wanted_) wanted_->publish(wanted);

@@ -31,9 +31,6 @@ class JointTopics : public hardware_interface::SystemInterface {
   CallbackReturn on_configure(const rclcpp_lifecycle::State& previous) override;
   CallbackReturn on_activate(const rclcpp_lifecycle::State& previous) override;
 
-  std::vector<hardware_interface::StateInterface> export_state_interfaces() override;
-  std::vector<hardware_interface::CommandInterface> export_command_interfaces() override;
-
   // Takes what has come since; the newest value of each joint counts.
   hardware_interface::return_type read(const rclcpp::Time& time,
                                        const rclcpp::Duration& period) override;
@@ -43,13 +40,16 @@ class JointTopics : public hardware_interface::SystemInterface {
 
  private:
   static constexpr std::size_t kQuantities = 3;  // position, velocity, effort
-  using Values = std::array<double, kQuantities>;
   using JointState = sensor_msgs::msg::JointState;
+  // Of one joint, the names of its interfaces, `shoulder/position`; empty: it has none of that.
+  struct Interfaces {
+    std::array<std::string, kQuantities> states, commands;
+  };
 
+  bool AllCommandTheSame() const;
   void Take(const JointState& state);
 
-  std::vector<Values> states_, commands_;         // of each joint; NaN: not known
-  std::array<bool, kQuantities> commanded_ = {};  // which of them there are command interfaces for
+  std::vector<Interfaces> joints_;  // as in info_.joints
   rclcpp::Node::SharedPtr node_;
   rclcpp::Subscription<JointState>::SharedPtr measured_;
   rclcpp::Publisher<JointState>::SharedPtr wanted_;
