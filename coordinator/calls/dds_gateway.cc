@@ -125,11 +125,15 @@ void DdsGateway::WarnOfSockets(const Process& process, shm::WhySockets why) {
     case shm::WhySockets::kNoLibraryOfOurs:
       break;
   }
-  const std::string topics = NamesOfOwnTopics(run_.scenario);
+  const bool are_served = std::ranges::any_of(run_.robots, &Robot::is_ours);
+  const std::string topics = are_served ? "" : NamesOfOwnTopics(run_.scenario);
   const std::string missed = topics.empty()
                                  ? "programs whose DDS is in shared memory"
                                  : "the scenario's topics in shared memory (" + topics + ")";
-  const char* other_way = topics.empty() ? "" : ", or give it channels of the type udp_json";
+  const char* other_way = topics.empty() ? ""
+                          : run_.scenario.network
+                              ? ", or give it channels of the type udp_json"
+                              : ", or give the client `dds: sockets`, and it meets them there";
   run_.Warn(fmt::format("the DDS of {} uses sockets because {}, so it never meets {}; {}{}",
                         process.name, reason, missed, mend, other_way));
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "coordinator/core/turn_plan.h"
+#include "coordinator/gateway/gateway_robot.h"
 #include "coordinator/host/fifo_executor.h"
 #include "coordinator/host/gate_executor.h"
 #include "coordinator/os/guardian.h"
@@ -330,14 +331,26 @@ void Engine::LookAround() {
 // All threads have said that they end; the kernel is about to end their processes. False once that
 // is over.
 bool Engine::AwaitDeaths() {
-  for (int turn = 0; turn < kDeathTurns && run_.table.living() == 0 && !launches_.AreAhead();
-       ++turn) {
-    const bool all_dead = std::all_of(run_.table.processes().begin(), run_.table.processes().end(),
-                                      [](const Process& process) { return process.dead; });
+  const auto is_dead = [this](const Process& process) {
+    return process.dead || (process.robot->is_ours && !run_.IsInGrace());
+  };
+  for (int turn = 0; turn < kDeathTurns && Living() == 0 && !launches_.AreAhead(); ++turn) {
+    const bool all_dead =
+        std::all_of(run_.table.processes().begin(), run_.table.processes().end(), is_dead);
     if (all_dead || grace_.IsOver() || (run_.stop.asked() && !run_.IsInGrace())) return false;
     PollEvents(kOutsidePoll, {run_.latest});
   }
-  return run_.table.living() > 0 || launches_.AreAhead();
+  return Living() > 0 || launches_.AreAhead();
+}
+
+// Threads for which the run goes on. At its end all are waited for.
+int Engine::Living() const {
+  int living = run_.table.living();
+  if (run_.IsInGrace()) return living;
+  for (const Robot& robot : run_.robots) {
+    if (robot.is_ours) living -= static_cast<int>(robot.tasks.size());
+  }
+  return living;
 }
 
 // Nobody acts by itself any more, and no world goes on: what is left of the run is idle time, which
@@ -366,7 +379,7 @@ bool Engine::AwaitOutside() {
 // One step of the run; false at its end.
 bool Engine::Step() {
   deaths_.DropLinks();
-  if (run_.table.living() == 0 && !launches_.AreAhead()) return AwaitDeaths();
+  if (Living() == 0 && !launches_.AreAhead()) return AwaitDeaths();
   if (debugger_.Holds()) {
     WaitForDebugger();
     return true;
@@ -440,7 +453,11 @@ RunReport RunScenario(const Scenario& scenario, const RunOptions& options) {
       return refused;
     }
   }
-  return Engine(scenario, options).Run();
+  Scenario whole = scenario;
+  if (auto gateway = GatewayRobot(whole, options.preload_library)) {
+    whole.robots.push_back(*std::move(gateway));
+  }
+  return Engine(whole, options).Run();
 }
 
 }  // namespace tcs

@@ -115,6 +115,7 @@ class Engine {
   // The loop (engine.cc).
   bool Step();
   bool AwaitDeaths();
+  int Living() const;
   VirtualDuration MostHeld() const;
   VirtualDuration LeftToHold(const Task& task) const;
   bool StandsForEver(VirtualCpu& cpu) const;

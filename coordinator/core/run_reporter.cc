@@ -29,7 +29,7 @@ RunProgress RunReporter::Now() const {
   progress.coordinating_ns = CoordinatingNs();
   progress.pace = from_.pacing.Report();
   for (const Process& process : run_.table.processes()) {
-    if (!process.is_client) continue;
+    if (!process.is_client || process.robot->is_ours) continue;
     progress.clients.push_back({process.name, from_.usage.ChargedToAllOf(process).ns()});
   }
   return progress;
@@ -63,7 +63,7 @@ void RunReporter::Conclude(VirtualTime end) {
   report.interrupted = run_.stop.asked();
   report.stop_signal = run_.stop.signal();
   for (const Launches::Launch& launch : from_.launches.all()) {
-    report.clients.push_back(ReportOf(launch));
+    if (!launch.robot->is_ours) report.clients.push_back(ReportOf(launch));
   }
   if (from_.answers.is_open()) Answer(end);
   for (const Robot& robot : run_.robots) {
@@ -89,6 +89,7 @@ void RunReporter::Answer(VirtualTime end) {
   const std::vector<ClientFigures> figures = from_.answers.book().Conclude(end.ns());
   std::vector<ClientOutcome> outcomes;
   for (const Launches::Launch& launch : from_.launches.all()) {
+    if (launch.robot->is_ours) continue;
     const auto who = from_.answers.WhoIs(*launch.spec);
     ClientReport& client = run_.report.clients[outcomes.size()];
     ClientOutcome& outcome = outcomes.emplace_back();

@@ -213,6 +213,7 @@ void Engine::MakeRobots() {
         }));
     robot.number = static_cast<std::uint32_t>(run_.robots.size());
     robot.is_ideal = spec.is_ideal;
+    robot.is_ours = spec.is_ours;
     for (std::uint32_t core = 0; core < cores; ++core) {
       VirtualCpu& cpu = run_.cpus.emplace_back();
       cpu.robot = &robot;
@@ -295,6 +296,13 @@ void Engine::TellOfEnds() {
       .process_has_ended =
           [this](Process& process, Moment moment) {
             if (process.is_client) launches_.ClientHasEnded(process);
+            if (process.is_client && process.robot->is_ours && !run_.IsInGrace()) {
+              run_.Warn(fmt::format(
+                  "tcs-dds-gateway has ended at {:.3f} s, so from then on programs whose DDS uses "
+                  "sockets have no sensors, clock and commands of the type dds; what it has said "
+                  "on stderr says why",
+                  moment.at.seconds()));
+            }
             objects_.WakeAll(moment);
             dds_.Leave(process, moment);
           },

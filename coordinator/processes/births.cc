@@ -83,7 +83,8 @@ Task& Births::AddChild(pid_t pid, pid_t parent, const Process& maker, VirtualTim
   process.call_cost = maker.call_cost;
   process.allocation_cost = maker.allocation_cost;
   process.patch_vdso = maker.patch_vdso;
-  process.dds_endpoints = maker.dds_endpoints;
+  // That of the gateway speaks to programs by sockets.
+  process.dds_endpoints = maker.dds_endpoints && !maker.robot->is_ours;
   process.clock = maker.clock.Fork();
   Task& task = AddTask(process, pid, at);
   task.is_further = true;

@@ -34,7 +34,9 @@ SpawnRequest RequestFor(const ClientSpec& client, const Robot& robot, const RunO
       client.environment.contains("LD_PRELOAD") ? preload : options.user_preload,
       options.preload_library + (counts_allocations ? ":" + options.allocation_library : ""));
   request.fixed_layout = is_fixed;
-  if (!options.output_directory.empty()) {
+  if (robot.is_ours) {
+    request.log_stdout = "/dev/null";  // what it says on stderr is for the user
+  } else if (!options.output_directory.empty()) {
     const std::string base = options.output_directory + "/" + FileNameOf(client);
     request.log_stdout = base + ".out.log";
     request.log_stderr = base + ".err.log";

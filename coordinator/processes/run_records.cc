@@ -15,7 +15,9 @@ std::string RunRecords::Open() {
 
 std::string RunRecords::Follow(AnswerFeed& answers) {
   answers_ = &answers;
-  answers.book().Tell([this](const Response& response) { responses_.Write(response); });
+  answers.book().Tell([this](const Response& response) {
+    if (!answers_->IsOurs(response.client)) responses_.Write(response);
+  });
   return responses_.Open(run_.options.output_directory + "/responses.csv",
                          answers.NamesOfClients());
 }
@@ -36,6 +38,7 @@ std::string RunRecords::OpenFiles() {
   }
   if (error.empty()) error = output_.Open(directory);
   for (const RobotSpec& robot : run_.scenario.robots) {
+    if (robot.is_ours) continue;
     for (const ClientSpec& client : robot.clients) {
       output_.Add(client.name, FileNameOf(client));
       client_metrics_.Add(client.name, directory + "/" + FileNameOf(client) + ".out.log");

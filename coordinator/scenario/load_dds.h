@@ -38,9 +38,8 @@ ClockSpec LoadClock(const YamlValue& value, DdsTopics* topics);
 
 dds::RosRelease LoadRosRelease(const YamlValue& value);
 
-// Once all else is loaded: clients that use sockets never meet the scenario's own topics. A warning
-// for each, because it may have other programs to talk to; a mistake if no client is left that
-// meets them.
+// Once all else is loaded: a warning for each client that uses sockets on a host of its robot's
+// own, where the scenario's topics are not served (gateway/gateway_robot.h).
 void CheckDdsTransports(const YamlMap& top, Scenario* scenario);
 
 }  // namespace tcs

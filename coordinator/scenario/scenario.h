@@ -92,6 +92,7 @@ struct RobotSpec {
   std::vector<ClientSpec> clients;
   SchedulerPolicy scheduler = SchedulerPolicy::kFixedPriority;
   bool is_ideal = false;  // computing takes its programs no time
+  bool is_ours = false;   // tcsim's own, which no scenario names (gateway/gateway_robot.h)
 };
 
 struct UdpEndpoint {

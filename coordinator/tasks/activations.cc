@@ -99,6 +99,13 @@ void Activations::IsCutOff(const Task& task, VirtualTime end) const {
                          std::max<std::int64_t>(0, task.charged.ns() - activation.charged_ns));
 }
 
+void Activations::Write(const Task& task, const Activation& activation, std::int64_t end_ns,
+                        std::int64_t charged_ns, const shm::WorkCounts& work) {
+  if (task.process->robot->is_ours) return;
+  log_.Write(task.process->name, task.is_further ? task.order : 0, activation, end_ns, charged_ns,
+             work);
+}
+
 // It did not wait, and is at its next activation all the same (shm/receipts.h).
 void Activations::Next(Task& task, ProgramTime now, VirtualDuration charged,
                        const shm::WorkCounts& work, const Receipt& receipt) {
@@ -107,8 +114,7 @@ void Activations::Next(Task& task, ProgramTime now, VirtualDuration charged,
   if (receipt.number <= 1) FindRelease(activation, task, 0);
   const std::int64_t now_ns = std::max(now.ns(), activation.start_ns);
   const std::int64_t charged_ns = std::max(charged.ns(), activation.charged_ns);
-  log_.Write(task.process->name, task.is_further ? task.order : 0, activation, now_ns, charged_ns,
-             work);
+  Write(task, activation, now_ns, charged_ns, work);
   // The one that ends began with the receipt before.
   TellOfEnd(task, receipt.number == 0 ? 0 : receipt.number - 1, now_ns, charged_ns);
   ++task.activations;
@@ -160,8 +166,7 @@ void Activations::Idles(Task& task, bool dies) {
   // What a switch takes is an estimate: one shorter than it gives back what was charged too much.
   // No activation is charged less than nothing for that; those that follow are charged less.
   const std::int64_t charged = std::max(task.charged.ns(), task.activation.charged_ns);
-  log_.Write(task.process->name, task.is_further ? task.order : 0, task.activation,
-             std::max(now, task.activation.start_ns), charged, task.work);
+  Write(task, task.activation, std::max(now, task.activation.start_ns), charged, task.work);
   const std::int64_t end_ns = std::max(now, task.activation.start_ns);
   // What a program does at its end, nobody waits for.
   const bool pauses = !dies && TellOfPause(task, end_ns, charged);

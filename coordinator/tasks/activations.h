@@ -65,6 +65,8 @@ class Activations {
     shm::Receipts::Of of = shm::Receipts::Of::kMessage;
     std::optional<std::int64_t> release_ns{};  // if the thread has said that
   };
+  void Write(const Task& task, const Activation& activation, std::int64_t end_ns,
+             std::int64_t charged_ns, const shm::WorkCounts& work);
   void Next(Task& task, ProgramTime now, VirtualDuration charged, const shm::WorkCounts& work,
             const Receipt& receipt);
 

@@ -7,6 +7,17 @@
 
 namespace tcs {
 
+namespace {
+
+// Of the gateway's threads (gateway/main.cc): samples are taken by the deliverer of the process by
+// endpoints, and written by the first thread of the one by sockets.
+bool CarriesSensors(const Task& task) {
+  const Process& process = *task.process;
+  return process.is_client ? task.is_deliverer : task.tid == process.pid;
+}
+
+}  // namespace
+
 void AnswerFeed::Open(const Scenario& scenario) {
   std::vector<AnswerBook::Client> clients;
   int robot_number = 0;
@@ -17,6 +28,13 @@ void AnswerFeed::Open(const Scenario& scenario) {
                          .robot = robot_number,
                          .deadline_ns = client.deadline.ns(),
                          .is_periodic = client.client_class == ClientClass::kPeriodic});
+    }
+    if (robot.is_ours) {
+      ours_ = static_cast<int>(clients.size()) - 1;
+      AnswerBook::Client commands = clients.back();
+      commands.name += " (commands)";
+      names_[commands.name] = static_cast<int>(clients.size());
+      clients.push_back(std::move(commands));
     }
     ++robot_number;
   }
@@ -78,6 +96,11 @@ std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const Task& task) const {
     const std::optional<AnswerBook::Who> found = WhoIs(*client->spec);
     if (!found.has_value()) return std::nullopt;
     known = {task.process, found->client};
+  }
+  if (known.client == ours_) {
+    return AnswerBook::Who{.client = CarriesSensors(task) ? ours_ : ours_ + 1,
+                           .thread = task.order,
+                           .is_first = !task.is_further};
   }
   return AnswerBook::Who{
       .client = known.client, .thread = task.order, .is_first = !task.is_further};

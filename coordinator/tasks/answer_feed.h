@@ -25,6 +25,9 @@ class AnswerFeed {
   // Clients' names, by their numbers in the book.
   std::vector<std::string> NamesOfClients() const;
 
+  // Whether the client is tcsim's own, of which results do not tell.
+  bool IsOurs(int client) const { return ours_ >= 0 && client >= ours_; }
+
   // None of a thread that is no client's.
   std::optional<AnswerBook::Who> WhoIs(const Task& task) const;
   // Of a client's first thread, without a number. By its name: ROBOT/CLIENT.
@@ -49,6 +52,9 @@ class AnswerFeed {
   ChainBook chains_;
   std::unordered_map<const ClientSpec*, int> clients_;
   std::map<std::string, int> names_;
+  // The gateway's first number, the last but one of all: what it knows of sensors is not what its
+  // commands are made of, so it counts as two. None: there is no gateway.
+  int ours_ = -1;
   mutable std::vector<Known> known_;  // by thread, as AnswerBook::Who has it
 };
 

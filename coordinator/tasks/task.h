@@ -214,6 +214,7 @@ struct Robot {
   double speed;
   std::uint32_t number = 0;   // in the scenario's order, from 1 on
   bool is_ideal = false;      // its threads are charged nothing
+  bool is_ours = false;       // tcsim's own: no run goes on for its programs
   bool is_reached = false;    // nothing is local to it any more (calls/local_sockets.h)
   bool is_disturbed = false;  // others than its own programs send it signals (core/turns_beside.h)
   RobotScheduler scheduler;

@@ -23,6 +23,11 @@ for file in bodies.csv dispatches.csv activations.csv bag/bag_0.db3; do
   cmp "$out/first/$file" "$out/second/$file" || fail "fixed runs differ: $file"
 done
 flies hover_py_fixed hover.yaml --accounting fixed --set "$hover_py"
+# As with any other middleware.
+by_sockets=(--set robots.drone.clients.controller.dds=sockets --set expect.controller=null)
+flies hover_sockets hover.yaml "${by_sockets[@]}"
+for run in third fourth; do flies "$run" hover.yaml --accounting fixed "${by_sockets[@]}"; done
+cmp "$out/third/bodies.csv" "$out/fourth/bodies.csv" || fail "fixed runs by sockets differ"
 flies rover rover.yaml
 flies rover_fixed rover.yaml --accounting fixed
 status=0

@@ -25,7 +25,7 @@ GLIBC_2.35
 END
 readelf --dynamic "$work"/tcs/lib/*/tcs/libtcs_preload.so | grep NEEDED | grep -v 'libc\.so\.6\|ld-linux' && fail "the shim needs these"
 
-for file in "$work/tcs/bin/tcsim" "$work"/tcs/lib/*/tcs/tcsim-*; do
+for file in "$work/tcs/bin/tcsim" $(find "$work/tcs/lib" -type f \( -name 'tcsim-*' -o -name tcs-dds-gateway \)); do
   env -i ldd "$file" | awk '$2 == "=>" { print $3 }' | xargs realpath -s | grep -v "^$work/tcs/lib/carried/" |
     grep -vE '/(libc|libm|libstdc\+\+|libgcc_s|libpthread)\.so[.0-9]*$' && fail "$file takes these from elsewhere"
 done

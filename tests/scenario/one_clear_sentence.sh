@@ -46,13 +46,6 @@ refused "no folder '$out/nowhere'" "$tcsim" topics "$out/nowhere"
 mkdir "$out/no-topics"
 refused "'$out/no-topics' has no topics.json" "$tcsim" topics "$out/no-topics"
 
-cat >"$out/sockets.yaml" <<'YAML'
-duration: 1s
-clock: {}
-robots: {r: {clients: {idle: {command: [sleep, "1"], dds: sockets}}}}
-YAML
-refused 'sockets.yaml:3: robots.r.clients.idle.dds is sockets, as for all clients, .*/clock.*; remove it' "$tcsim" run "$out/sockets.yaml"
-
 mkdir "$out/busy"
 flock --no-fork "$out/busy" sleep 60 &
 for _ in $(seq 100); do flock -n "$out/busy" true || break; sleep 0.05; done

@@ -13,10 +13,10 @@ constexpr const char* kNode = "tcsim";
 
 }  // namespace
 
-std::string RosNodes::NamespaceOf(std::optional<int> body) const {
+std::string RosNodes::NamespaceOf(const Scenario& scenario, std::optional<int> body) {
   if (!body.has_value()) return "/";
   const auto has_it = [body](const ClientSpec& client) { return client.body == body; };
-  for (const RobotSpec& robot : scenario_.robots) {
+  for (const RobotSpec& robot : scenario.robots) {
     if (std::any_of(robot.clients.begin(), robot.clients.end(), has_it)) {
       return "/" + dds::RosToken(robot.name);
     }
@@ -28,7 +28,7 @@ void RosNodes::Add(const dds::OwnEndpoints& ends, dds::OwnEndpoints::Index endpo
                    dds::EndpointKind kind, int domain, std::optional<int> body) {
   dds::ParticipantInfo& participant = by_domain_[domain];
   participant.participant = ends.ParticipantOf(endpoint);
-  const std::string name_space = NamespaceOf(body);
+  const std::string name_space = NamespaceOf(scenario_, body);
   auto node = std::find_if(participant.nodes.begin(), participant.nodes.end(),
                            [&](const dds::Node& known) { return known.name_space == name_space; });
   if (node == participant.nodes.end()) {

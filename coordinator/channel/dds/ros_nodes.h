@@ -23,13 +23,14 @@ class RosNodes {
   void Add(const dds::OwnEndpoints& ends, dds::OwnEndpoints::Index endpoint, dds::EndpointKind kind,
            int domain, std::optional<int> body);
 
+  // Of the node to which an endpoint belongs that has to do with the body.
+  static std::string NamespaceOf(const Scenario& scenario, std::optional<int> body);
+
   // Announces them in each domain, also to programs that join later. `timestamp_ns` is DDS's source
   // timestamp.
   void Announce(dds::OwnEndpoints& ends, std::int64_t timestamp_ns) const;
 
  private:
-  std::string NamespaceOf(std::optional<int> body) const;
-
   const Scenario& scenario_;
   std::map<int, dds::ParticipantInfo> by_domain_;
 };

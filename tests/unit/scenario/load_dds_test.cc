@@ -125,17 +125,19 @@ TEST_F(LoadDdsTest, ChannelsOfBothTypesStandSideBySide) {
 }
 
 // It may have others to talk to, so it is no mistake.
-TEST_F(LoadDdsTest, AClientThatUsesSocketsIsWarnedOfTopicsInMemory) {
+TEST_F(LoadDdsTest, AClientThatUsesSocketsOnAHostOfItsRobotsOwnIsWarnedOfTopicsThatAreNotThere) {
+  EXPECT_THAT(Load(kGoodDdsScenario).warnings, IsEmpty());
+  const auto in_network = [](std::string scenario) {
+    return "network: {latency: 1ms}\n" + scenario;
+  };
+  EXPECT_THAT(Load(in_network(std::string(kGoodDdsScenario))).warnings,
+              ElementsAre(AllOf(
+                  HasSubstr("s.yaml:11: robots.hunter.clients.controller.dds is sockets"),
+                  HasSubstr("the scenario's topics (/odom, /joint_states, /cmd and 2 more);"),
+                  HasSubstr("remove `dds` for a Cyclone DDS program"), HasSubstr("udp_json"))));
   EXPECT_THAT(
-      Load(kGoodDdsScenario).warnings,
-      ElementsAre(AllOf(HasSubstr("s.yaml:10: robots.hunter.clients.controller.dds is sockets"),
-                        HasSubstr("in shared memory (/odom, /joint_states, /cmd and 2 more);"),
-                        HasSubstr("remove it for a Cyclone DDS program"), HasSubstr("udp_json"))));
-  EXPECT_THAT(Load(WithReplaced("dds: sockets", "dds: endpoints", kGoodDdsScenario)).warnings,
-              IsEmpty());
-  // The same client, and nothing of the simulation's on DDS.
-  EXPECT_THAT(Load(WithReplaced("        body: predator\n", "        dds: sockets\n")).warnings,
-              IsEmpty());
+      Load(in_network(WithReplaced("dds: sockets", "dds: endpoints", kGoodDdsScenario))).warnings,
+      IsEmpty());
 }
 
 TEST_F(LoadDdsTest, TheReleaseOfRosDecidesTheFormOfWhatItsToolsAreTold) {
@@ -179,12 +181,6 @@ const WrongDds kWrongDds[] = {
      "dds: socket",
      10,
      {"robots.hunter.clients.controller.dds is the unknown 'socket'", "'sockets'?"}},
-    {"NobodyIsLeftWhoMeetsTheTopics",
-     "dds: endpoints}\n      other: {command: [./controller]}\n",
-     "dds: sockets}\n",
-     10,
-     {"robots.hunter.clients.controller.dds is sockets, as for all clients",
-      "no client ever meets the scenario's topics in shared memory (/odom,", "udp_json"}},
     {"UnknownRelease",
      "name: pursuit\n",
      "ros: jazy\n",
