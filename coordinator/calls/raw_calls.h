@@ -16,6 +16,7 @@
 #include "coordinator/calls/raw_timers.h"
 #include "coordinator/calls/raw_times.h"
 #include "coordinator/calls/raw_transfers.h"
+#include "coordinator/calls/spawns.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/tasks/waker.h"
 
