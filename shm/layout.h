@@ -35,7 +35,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 23;
+inline constexpr std::uint32_t kVersion = 24;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -65,15 +65,15 @@ enum class NotificationKind : std::uint32_t {
                   // as kTimerGet
   kTimerGet = 9,  // args[0]: timer id; reply[0]: next expiry or 0, reply[1]: interval
   kTimerDelete = 10,  // args[0]: timer id
-  kSpawned = 11,      // args[0]: pid of a new child that will attach; 0: a thread of the process,
-                      // with args[1..2] as kPriority's if args[1] >= 0, args[3] as kAffinity's
+  kSpawned = 11,      // args[0]: pid of a new child that will attach (ThreadSlot::announces)
   kYield = 12,        // let equals run
   kPriority = 13,     // args[0]: tid, 0 for the own; args[1]: POSIX policy, args[2]: priority, for
                       // the virtual scheduler; reply[0]: 0, or negative for an errno.
   // Policies may have SCHED_RESET_ON_FORK in them, or be kKeepPolicy. args[3]: 1
   // only to ask whether the caller may
   kInterrupted = 14,  // a signal handler wants to run while the thread waits: end the wait
-  kStrangers = 15,    // the process is about to get threads that never register
+  kMadeThread = 15,   // args[0]: pthread_t of a new thread that will attach; args[1..2] as
+                      // kPriority's if args[1] >= 0, args[3] as kAffinity's (0: any)
   kResumed = 17,      // a call unknown to the shim has returned (never sent by the shim itself)
   kPriorityGet = 18,  // args[0]: tid, 0 for the own; reply[0]: policy, or negative for an errno;
                       // reply[1]: priority
@@ -319,10 +319,14 @@ struct alignas(64) ThreadSlot {
   std::atomic<std::uint32_t> waits_in_call;
   std::uint64_t stopped_tsc;
   DatagramNotes datagrams;
+  // Written by the thread: not 0 while it makes a thread or a process of which it will say so
+  // (kMadeThread, kSpawned). What the kernel makes for it at other times never attaches, or later.
+  std::atomic<std::uint32_t> announces;
   alignas(64) Postbox postbox;
 };
 static_assert(sizeof(ThreadSlot) == 5376);
 static_assert(offsetof(ThreadSlot, datagrams) == 1216);
+static_assert(offsetof(ThreadSlot, announces) == 3272);
 static_assert(offsetof(ThreadSlot, postbox) == 3328);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);

@@ -112,7 +112,7 @@ void Engine::Resume(Task& task) {
     host_cpu_.Start(task, task.spins);
     if (task.slot >= 0) SlotOf(task).clock.horizon_ns = task.grant.horizon_ns;
   }
-  if (task.slot < 0) registration_.LetRegister(task);
+  if (task.slot < 0 || task.is_adopted) registration_.LetRegister(task);
   if (task.trap_id != 0) {
     AnswerCall(task);
   } else if (task.slot >= 0 && is_at_gate) {
@@ -382,6 +382,8 @@ void Engine::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   task.is_brief = task.follow_up != FollowUp::kNone && !task.brief_done;
   // How far it comes in so short a time is the host's: under set costs no further than the call.
   if (task.is_brief && run_.IsFixed()) horizon = task.cpu->progress;
+  // Others may have something to do as soon as the kernel has carried its call out.
+  if (task.is_brief || !task.births.empty()) idle_until = {};
   run_.turn.Begin(task, horizon);
   says_call_ = opens_gate_ = false;
   if (task.state == TaskState::kHolding) waker_.SetState(task, TaskState::kReady);
@@ -424,6 +426,7 @@ void Engine::TellOthersOf(Task& task, Moment call, bool looks_again) {
   const bool sent_signal = task.follow_up == FollowUp::kSignals;
   if (task.follow_up != FollowUp::kNone) follow_ups_.Do(task, call, looks_again);
   if (sent_signal && run_.gates_only) AwaitSleepAtGates(call);
+  if (!run_.turn.HasSpoken()) spawns_.TurnEnds(task, stop);
   task.process->timers.EndRests(stop.at);
   if (run_.turn.HasSpoken()) shared_events_.PassOn(task, stop);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at

@@ -51,8 +51,8 @@ constexpr std::uint32_t kTrapped[] = {
     SYS_sched_yield, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr,
     SYS_sched_setaffinity, SYS_sched_getaffinity, SYS_sched_getscheduler, SYS_sched_getparam,
     SYS_sched_getattr, SYS_sched_rr_get_interval, SYS_getcpu,
-    // The end of a thread.
-    SYS_exit,
+    // The end of a thread, and the beginnings of threads and processes (clone_call.h).
+    SYS_exit, SYS_clone, SYS_clone3, SYS_fork, SYS_vfork,
     // Refused, so that programs take the calls that are known here.
     SYS_io_uring_setup,
     // Sandboxes that would keep new threads from the coordinator (landlock.h).
@@ -204,7 +204,7 @@ int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
   if (!has_level || too.executions) {
     numbers.unmarked.assign(std::begin(kExecutions), std::end(kExecutions));
   }
-  if (too.ends) numbers.unmarked.push_back(kEnd);
+  numbers.unmarked.push_back(kEnd);
   std::vector<sock_filter> program = Program(guarded, numbers);
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   auto install = [&filter](unsigned more) {
@@ -232,6 +232,11 @@ bool SendsSignal(const TrappedCall& call) {
 bool BeginsProgram(const TrappedCall& call) { return call.number == SYS_arch_prctl; }
 
 bool IsEnd(const TrappedCall& call) { return static_cast<std::uint32_t>(call.number) == kEnd; }
+
+bool MakesTask(const TrappedCall& call) {
+  return call.number == SYS_clone || call.number == SYS_clone3 || call.number == SYS_fork ||
+         call.number == SYS_vfork;
+}
 
 std::optional<TrappedCall> ReceiveTrapped(int listener) {
   seccomp_notif notification{};

@@ -31,7 +31,6 @@ struct TrappedCall {
 // What is trapped in some runs only.
 struct TrappedToo {
   bool executions = false;  // of other programs, the shim's, too; always where there are no levels
-  bool ends = false;        // of processes, the shim's, too
   bool draws = false;       // of random numbers
 };
 
@@ -55,8 +54,11 @@ bool BeginsProgram(const TrappedCall& call);
 // It sends a signal, to others or to itself.
 bool SendsSignal(const TrappedCall& call);
 
-// It ends its process.
+// It ends its process, by the shim's doing, too.
 bool IsEnd(const TrappedCall& call);
+
+// It makes a thread or a process (clone_call.h).
+bool MakesTask(const TrappedCall& call);
 
 // The next call that waits at `listener`; none if its thread has gone meanwhile.
 std::optional<TrappedCall> ReceiveTrapped(int listener);

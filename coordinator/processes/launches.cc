@@ -107,8 +107,7 @@ std::string Launches::Start(Launch& launch, VirtualTime at) {
   const ClientSpec& client = *launch.spec;
   SpawnRequest request = RequestFor(client, *launch.robot, run_.options);
   request.guarded = guarded_;
-  request.trapped_too = {
-      .executions = run_.SendsToGates(), .ends = run_.has_porters, .draws = run_.IsFixed()};
+  request.trapped_too = {.executions = run_.SendsToGates(), .draws = run_.IsFixed()};
   request.computer = network_.ComputerOf(launch.number);
   // Of those that ask their environment for it.
   if (request.computer != nullptr && getenv("HOSTNAME") != nullptr) {

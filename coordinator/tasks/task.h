@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "coordinator/host/host_thread.h"
+#include "coordinator/os/clone_call.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/porter.h"
 #include "coordinator/os/trap.h"
@@ -44,7 +45,15 @@ enum class FollowUp {
   kKernelWaits,
   kObjects,
   kContinued,
-  kTerminals
+  kTerminals,
+  kBirths
+};
+
+// A thread or a process that a thread is making, or has made: it is looked for until it is known
+// (calls/spawns.h).
+struct Birth {
+  CloneCall call;
+  bool is_announced = false;  // the shim has made it, and tells of it next
 };
 
 struct ClientSpec;
@@ -104,15 +113,21 @@ struct Task : HostThread {
   // coordinator (beside_cpu.h); and how far that one goes.
   int short_turns = 0, beside_after = 3;
   VirtualTime beside_horizon;
-  bool died_beside = false;      // with its process, in the turn that it has there
-  HostDuration ran;              // in its last turn
-  bool spins = false;            // computes without calls where computing takes no time
-  bool notified_early = false;   // has notified without being dispatched: answered at its dispatch
-  bool executes = false;         // another program, perhaps: it has no handlers there
-  bool has_signal = false;       // ours, to go to its gate, unless it has handled it by now
-  bool is_put_off = false;       // has notified, and is heard later (gates_only.cc),
-  bool is_call_put_off = false;  // or its trapped call has been received, and is taken later
-  shm::WorkCounts work{};        // so far,
+  bool died_beside = false;     // with its process, in the turn that it has there
+  HostDuration ran;             // in its last turn
+  bool spins = false;           // computes without calls where computing takes no time
+  bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
+  std::vector<Birth> births;    // that it has begun, the earliest first
+  bool in_vfork = false;        // it stands in the kernel until its child executes or ends
+  // It has its place, but does not know of it: it has made no call yet that the shim sees.
+  bool is_adopted = false;
+  std::uint64_t tls = 0;            // of one that was that at its birth; 0: unknown
+  bool can_be_stopped = true;       // it has the handler that brings a thread to its gate
+  bool executes = false;            // another program, perhaps: it has no handlers there
+  bool has_signal = false;          // ours, to go to its gate, unless it has handled it by now
+  bool is_put_off = false;          // has notified, and is heard later (gates_only.cc),
+  bool is_call_put_off = false;     // or its trapped call has been received, and is taken later
+  shm::WorkCounts work{};           // so far,
   std::uint64_t trapped_calls = 0;  // with those of its calls that the shim has not seen
   std::int64_t activations = 0;
   Activation activation;          // this one, while it does not wait
