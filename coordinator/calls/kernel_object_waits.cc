@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "coordinator/calls/call_files.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -10,6 +11,11 @@ namespace tcs {
 void KernelObjectWaits::Wait(Task& task, const shm::Notification& note, VirtualTime deadline) {
   const KernelObject object{.kind = note.args[0], .id = note.args[1]};
   objects_.Wait(task.order, object, note.args[2] != 0);
+  if (note.args[3] > 0) {
+    CallFiles::Keep(task, static_cast<int>(note.args[3] - 1));
+  } else if (note.args[3] < 0) {
+    CallFiles::KeepOn(task);
+  }
   waker_.Wait(task, {awaited::Queue{object}, deadline});
 }
 

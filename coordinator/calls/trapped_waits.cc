@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "coordinator/calls/call_files.h"
 #include "coordinator/calls/raw_polls.h"
 #include "coordinator/calls/raw_transfers.h"
 #include "coordinator/tasks/client_values.h"
@@ -53,7 +54,7 @@ void TrappedWaits::Finish(Task& task, shm::WakeReason reason) {
   task.trap_continues = false;
   if (watched->transfers) {
     task.trap_result = -EAGAIN;
-  } else {
+  } else if (!CallFiles::Keeps(task, *watched)) {  // which are looked at once more
     RawPolls::ClearResult(task, task.trapped_call);
   }
 }

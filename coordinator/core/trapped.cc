@@ -1,6 +1,7 @@
 // System calls of clients that the kernel hands over.
 #include <sys/syscall.h>
 
+#include "coordinator/calls/call_files.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "shm/check.h"
@@ -46,6 +47,10 @@ void Engine::TakeAgainIfUnmarked(Task& task) {
 Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
   if (!call.has_value()) return {.stops_running = !run_.gates_only, .wakes_others = true};
+  if (CallFiles::AsksFor(*call)) {
+    CallFiles::Answer(run_.table.Living(call->tid), *call);
+    return {};
+  }
   const auto take = [this, call](Moment at) { return TakeTrapped(*call, at); };
   Task* by = run_.table.Living(call->tid);
   if (by != nullptr && by->turns_beside) return take(moment);
