@@ -54,8 +54,9 @@ enum class NotificationKind : std::uint32_t {
   kWaitFds = 5,    // sleep until one of fds is ready, a signal of the set args[1] is pending, or
                    // deadline_ns; args[0]: 1 if one event of the one descriptor is for one waiter,
                    // the first of several that came, 2 if for the last;
-                   // args[2]: 1 to keep the place of the last such wait; reply[1]: 1 if others were
-                   // passed over, and want to know (kPassOn)
+                   // args[2]: 1 to keep the place of the last such wait; args[3]: a KeepFiles;
+                   // reply[0]: 1 if files are kept from now on; reply[1]: 1 if others were passed
+                   // over, and want to know (kPassOn)
   kPassOn = 32,    // the thread has taken what it was woken for
   kWaitChild = 6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or also, if
                    // args[1] is not 0, until one stops or goes on; or deadline_ns
@@ -83,7 +84,9 @@ enum class NotificationKind : std::uint32_t {
   kSignalled = 20,      // the thread has sent a signal to process args[0]; 0: to any
   kQueueNotifies = 21,  // a message queue will have the kernel send a signal: see queues_notify
   kWaitKey = 22,  // sleep until a kernel object is changed, or deadline_ns; args[0]: a WaitKey,
-                  // args[1]: its number, args[2]: 1 to keep the place of the last such wait
+                  // args[1]: its number, args[2]: 1 to keep the place of the last such wait;
+                  // args[3]: 0, or 1 more than a descriptor whose file is kept as with
+                  // KeepFiles::kForCall; -1: what is kept already
   kWakeKey = 23,  // the object of args[0] and args[1] has been changed
   kTimerOverrun = 24,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
                        // reply[0]: overruns of the signal accepted last
@@ -127,6 +130,23 @@ inline constexpr std::uint64_t kBeginsInCall = 2;
 inline constexpr std::uint64_t kIsAhead = 4;
 
 inline constexpr std::int64_t kKeepPolicy = -1;
+
+// Linux keeps the file of a call for as long as that lasts, whatever its number comes to mean
+// meanwhile. So does the coordinator with the files that a thread waits for, and beyond the wait
+// where their numbers then mean others, or none: until the thread's next wait that does not want
+// them, or kLeaveFiles.
+enum class KeepFiles : std::int64_t {
+  kNot = 0,
+  kForCall = 1,  // of the one descriptor in `fds`; with no events: it is not waited for
+  kForPoll = 2,  // of all of them: they are looked for by their numbers, and waited for as files
+  kAgain = 3,    // those that were kept are waited for
+  kForSet = 4,   // as kForCall, of an epoll set
+};
+
+// Operations of futex(2), for the shim to say something without a notification: they are always
+// handed over, and answered at once. The kernel knows neither.
+inline constexpr std::uint32_t kTakeFile = 0x7c570001;    // a descriptor of the file that was kept
+inline constexpr std::uint32_t kLeaveFiles = 0x7c570002;  // those that were kept are given up
 
 enum class WhySockets : std::uint32_t {
   kOtherLibrary = 1,     // its libddsc is none that libtcs_dds.so is written for
@@ -322,11 +342,15 @@ struct alignas(64) ThreadSlot {
   // Written by the thread: not 0 while it makes a thread or a process of which it will say so
   // (kMadeThread, kSpawned). What the kernel makes for it at other times never attaches, or later.
   std::atomic<std::uint32_t> announces;
+  // Written by the thread: how many descriptors it has closed or replaced, as far as the shim sees
+  // it.
+  std::atomic<std::uint32_t> descriptors_changed;
   alignas(64) Postbox postbox;
 };
 static_assert(sizeof(ThreadSlot) == 5376);
 static_assert(offsetof(ThreadSlot, datagrams) == 1216);
 static_assert(offsetof(ThreadSlot, announces) == 3272);
+static_assert(offsetof(ThreadSlot, descriptors_changed) == 3276);
 static_assert(offsetof(ThreadSlot, postbox) == 3328);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);

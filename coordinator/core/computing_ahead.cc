@@ -199,6 +199,7 @@ bool ComputingAhead::TakeTurn(Task& task, VirtualTime horizon) {
   // Whoever was woken meanwhile is not to be left behind further than the drift bound.
   Pay(task, std::min(horizon, parts_.run.root.Horizon(task.cpu->leaf)));
   if (!task.is_ahead) SendIfItComputes(task);
+  ++task.process->changes.turns;
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "coordinator/calls/call_files.h"
 #include "coordinator/calls/ipc_notes.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/core/turn_plan.h"
@@ -52,6 +53,7 @@ std::int64_t Engine::ChargedUndispatched(const Task& task) const {
 }
 
 void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) {
+  CallFiles::LookAtNumbers(task);
   shm::ThreadSlot& slot = SlotOf(task);
   shm::ClockPage& page = slot.clock;
   const VirtualCpu& cpu = *task.cpu;
@@ -96,9 +98,15 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
 // If something has ended the call meanwhile, the thread is on its way, and needs no answer unless
 // the kernel makes the call again.
 void Engine::AnswerCall(Task& task) {
-  task.WasAnswered(task.trap_continues
-                       ? guard_.Continue(task)
-                       : AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result));
+  const auto answer = [&task] {
+    if (!task.trap_file) {
+      return AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result);
+    }
+    const UniqueFd file = std::move(task.trap_file);
+    return AnswerTrappedByFile(task.trap_listener, task.trap_id, file.get(),
+                               task.trap_file_on_exec);
+  };
+  task.WasAnswered(task.trap_continues ? guard_.Continue(task) : answer());
 }
 
 // Who may run is changed and a gate opened: with the coordinator blocking next, which is when the
@@ -412,6 +420,7 @@ void Engine::NoteTurnBegins(Task& task) {
 void Engine::EndTurn(Task& task) {
   host_cpu_.active().TakeBack();
   if (task.state != TaskState::kDead) Settle(task);
+  CallFiles::NoteTurn(task);
   undispatched_.TurnEnds(task);
   run_.turn.End();
   run_.latest = task.cpu->progress;
@@ -457,6 +466,10 @@ void Engine::Answer(Task& task) {
 void Engine::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until) {
   TakeAgainIfUnmarked(task);
   if (AnswerEarly(task)) return;
+  if (kept_calls_.WaitsAgain(task)) {
+    PollEvents(kNoWait, {task.reached});
+    return;
+  }
   if (run_.gates_only && BringOthersToGates(task, {task.reached}).stops_running) return;
   const bool looks_again = task.brief_done;
   const Moment call{task.cpu->progress};

@@ -23,6 +23,7 @@
 #include "coordinator/calls/futex_calls.h"
 #include "coordinator/calls/futex_words.h"
 #include "coordinator/calls/guarded_calls.h"
+#include "coordinator/calls/kept_calls.h"
 #include "coordinator/calls/kernel_object_waits.h"
 #include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/lock_futexes.h"
@@ -330,6 +331,7 @@ class Engine {
   TrappedWaits trapped_waits_{words_, raw_child_waits_, activations_};
   TrappedCalls trapped_{run_,    waker_,     futexes_,       raw_calls_, guard_,
                         deaths_, *executor_, local_sockets_, spawns_};
+  KeptCalls kept_calls_{waker_, descriptors_};
   FollowUps follow_ups_{run_, objects_, shared_events_, signals_, signal_wakes_, spawns_};
 
   // What they notify.

@@ -17,6 +17,7 @@
 #include <new>
 #include <utility>
 
+#include "coordinator/calls/call_files.h"
 #include "coordinator/calls/scheduling_rights.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/core/locks.h"
@@ -259,9 +260,10 @@ void Engine::TellOfWaits() {
             signal_wakes_.EndAwait(task, SignalsOf(run_, task), {task.reached});
           },
       .left =
-          [this](Task& task, const Wait& left) {
+          [this](Task& task, Wait& left) {
             if (const auto* descriptors = left.As<awaited::Descriptors>())
               descriptors_.Leave(*descriptors);
+            CallFiles::Keep(task, left);
             words_.table().Leave(task.order);
             objects_.Leave(task);
             inheritance_.Leave(task);
@@ -286,6 +288,7 @@ void Engine::TellOfEnds() {
             objects_.Forget(task);
             ahead_.Forget(task);
             registration_.Forget(task);
+            task.kept.reset();
           },
       .wake_those_waiting_for = [this](Task& task,
                                        Moment moment) { locks_.WakeThoseWaitingFor(task, moment); },

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "coordinator/calls/call_files.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "shm/check.h"
@@ -60,6 +61,10 @@ Task* Engine::TaskOf(const TrappedCall& call) {
 Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
   if (!call.has_value()) return {.stops_running = !run_.gates_only, .wakes_others = true};
+  if (CallFiles::AsksFor(*call)) {
+    CallFiles::Answer(run_.table.Living(call->tid), *call);
+    return {};
+  }
   const auto take = [this, call](Moment at) { return TakeTrapped(*call, at); };
   Task* by = run_.table.Living(call->tid);
   if (by != nullptr && by->turns_beside) return take(moment);

@@ -261,6 +261,28 @@ bool AnswerTrapped(int listener, std::uint64_t id, std::int64_t result) {
   return ioctl(listener, SECCOMP_IOCTL_NOTIF_SEND, &response) == 0;
 }
 
+namespace {
+
+int AddFile(int listener, std::uint64_t id, int file, bool on_exec, unsigned flags) {
+  seccomp_notif_addfd added{};
+  added.id = id;
+  added.flags = flags;
+  added.srcfd = static_cast<std::uint32_t>(file);
+  added.newfd_flags = on_exec ? 0 : O_CLOEXEC;
+  return ioctl(listener, SECCOMP_IOCTL_NOTIF_ADDFD, &added);
+}
+
+}  // namespace
+
+bool AnswerTrappedByFile(int listener, std::uint64_t id, int file, bool on_exec) {
+  return AddFile(listener, id, file, on_exec, SECCOMP_ADDFD_FLAG_SEND) >= 0 ||
+         AnswerTrapped(listener, id, -errno);
+}
+
+int PutFileInto(int listener, std::uint64_t id, int file, bool on_exec) {
+  return AddFile(listener, id, file, on_exec, 0);
+}
+
 bool ContinueTrapped(int listener, std::uint64_t id) {
   seccomp_notif_resp response{};
   response.id = id;
@@ -283,6 +305,18 @@ bool ReadMemory(pid_t pid, const RemotePiece& first, const RemotePiece& second) 
                           {reinterpret_cast<void*>(second.address), second.size}};
   return process_vm_readv(pid, local, 2, remote, 2, 0) ==
          static_cast<ssize_t>(first.size + second.size);
+}
+
+bool ReadMemory(pid_t pid, const std::vector<iovec>& from, void* to, std::size_t size) {
+  const iovec local{to, size};
+  return size == 0 || process_vm_readv(pid, &local, 1, from.data(), from.size(), 0) ==
+                          static_cast<ssize_t>(size);
+}
+
+bool WriteMemory(pid_t pid, const std::vector<iovec>& to, const void* from, std::size_t size) {
+  const iovec local{const_cast<void*>(from), size};
+  return size == 0 ||
+         process_vm_writev(pid, &local, 1, to.data(), to.size(), 0) == static_cast<ssize_t>(size);
 }
 
 bool WriteMemory(pid_t pid, std::uint64_t address, const void* from, std::size_t size) {

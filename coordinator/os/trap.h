@@ -4,6 +4,7 @@
 #pragma once
 
 #include <sys/types.h>
+#include <sys/uio.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -66,6 +67,11 @@ std::optional<TrappedCall> ReceiveTrapped(int listener);
 // Ends the call with `result`, negative for an errno. False if the thread no longer waits there: a
 // signal has ended the call.
 bool AnswerTrapped(int listener, std::uint64_t id, std::int64_t result);
+// Ends it with a descriptor of the file, which the caller has from then on; `on_exec`: also when it
+// executes another program.
+bool AnswerTrappedByFile(int listener, std::uint64_t id, int file, bool on_exec);
+// The same without ending it. The number, or -1: errno is set.
+int PutFileInto(int listener, std::uint64_t id, int file, bool on_exec);
 // Lets the kernel carry it out.
 bool ContinueTrapped(int listener, std::uint64_t id);
 
@@ -95,5 +101,8 @@ struct RemotePiece {
 };
 bool ReadMemory(pid_t pid, const RemotePiece& first, const RemotePiece& second);
 bool WriteMemory(pid_t pid, std::uint64_t address, const void* from, std::size_t size);
+// As much as `size` from, or to, several places one after the other.
+bool ReadMemory(pid_t pid, const std::vector<iovec>& from, void* to, std::size_t size);
+bool WriteMemory(pid_t pid, const std::vector<iovec>& to, const void* from, std::size_t size);
 
 }  // namespace tcs

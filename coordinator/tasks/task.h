@@ -23,6 +23,7 @@
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/queues/process_timers.h"
 #include "coordinator/tasks/ended_children.h"
+#include "coordinator/tasks/kept_files.h"
 #include "coordinator/tasks/process_link.h"
 #include "coordinator/tasks/program_clock.h"
 #include "coordinator/tasks/task_state.h"
@@ -75,12 +76,15 @@ struct Task : HostThread {
   VirtualDuration lead;              // of its process's clock when it last stopped
   std::int64_t children_looked = 0;  // of its process's children_changed when it last came to wait
   std::uint64_t fds_order = 0;       // of waiting for descriptors, over several attempts
+  std::optional<KeptFiles> kept;     // of its call, from a wait on that is over
   bool passes_on = false;            // others were passed over for it (one_waiter.cc)
   bool is_deliverer = false;         // of DDS messages, to its process
   std::optional<VirtualTime> messages_until;  // those due by then are for its next dispatch
   int trap_listener = -1;
-  std::uint64_t trap_id = 0;     // it stopped in a trapped call instead of at its gate
-  std::int64_t trap_result = 0;  // what that call is to return
+  std::uint64_t trap_id = 0;       // it stopped in a trapped call instead of at its gate
+  std::int64_t trap_result = 0;    // what that call is to return,
+  UniqueFd trap_file;              // or a descriptor of that, which lives on when it executes
+  bool trap_file_on_exec = false;  // another program
   // It had left the call, and may make it again: for the result that it has missed.
   bool answer_lost = false;
   std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
@@ -130,10 +134,11 @@ struct Task : HostThread {
   shm::WorkCounts work{};           // so far,
   std::uint64_t trapped_calls = 0;  // with those of its calls that the shim has not seen
   std::int64_t activations = 0;
-  Activation activation;          // this one, while it does not wait
-  bool is_further = false;        // not the first thread of a client
-  std::uint64_t posts_taken = 0;  // of its postbox (shm/postbox.h): what comes next
-  int row = 0;                    // in the schedule trace and the log of dispatches
+  Activation activation;           // this one, while it does not wait
+  bool is_further = false;         // not the first thread of a client
+  std::uint64_t posts_taken = 0;   // of its postbox (shm/postbox.h): what comes next
+  std::uint32_t changes_seen = 0;  // of its slot's descriptors_changed
+  int row = 0;                     // in the schedule trace and the log of dispatches
 
   void ComeTo(VirtualTime time) {
     TCS_CHECK(time >= reached);
@@ -183,6 +188,8 @@ struct Process {
   ProgramClock clock;
   ProcessTimers timers;
   std::map<std::int64_t, UniqueFd> timer_fds;  // of those that have one, by the timer's id
+  // Of those: no descriptor of the program's is left, but calls on them were waiting then.
+  std::vector<std::int64_t> closed_timers;
   // When one last ran out, as the virtual CPU's time, while nobody has come to wait since.
   VirtualTime expired = VirtualTime::Never();
   EndedThreads ended;  // and how many periodic expiries found nobody waiting
@@ -202,6 +209,7 @@ struct Process {
   bool killed = false;                 // at the end of its grace
   bool expelled = false;               // killed, for what it has written into shared memory
   int threads = 1;                     // that ever attached
+  DescriptorChanges changes;           // of its descriptors
   bool has_unmanaged_threads = false;  // threads that never will
   bool is_client = false;              // named in the scenario, rather than a child of one
   int wait_status = 0;                 // once dead, of the coordinator's own children

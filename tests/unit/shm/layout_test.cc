@@ -42,6 +42,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, stopped_tsc), 1208u);
   EXPECT_EQ(offsetof(ThreadSlot, datagrams), 1216u);
   EXPECT_EQ(offsetof(ThreadSlot, announces), 3272u);
+  EXPECT_EQ(offsetof(ThreadSlot, descriptors_changed), 3276u);
   EXPECT_EQ(offsetof(ThreadSlot, postbox), 3328u);
 }
 
