@@ -42,9 +42,15 @@ struct MeteredThread {
   UncheckedRuns unchecked_runs;       // by the coordinator
   std::uint64_t asked_tsc = 0;        // when it was last said how long it may run,
   HostDuration asked;                 // and how long
-  ProgramTime silent_at;              // its clock when it was last looked at
-  int silent_looks = 0;               // in a row that have found it there
-  bool is_silent = false;             // it computes without a call
+  // Under set costs (fixed_meter.h): what it had been charged when it was last looked at; how many
+  // looks in a row have found it there; what its CPU clock said when it was first found there, or
+  // charged for it, -1: it has not been; and when it is looked at next.
+  std::int64_t silent_cpu_ns = 0;
+  int silent_looks = 0;
+  std::int64_t silent_from_ns = -1;
+  HostDuration next_look;
+  bool pays_for_silence = false;  // its client is known to compute for long without a call
+  bool is_silent = false;         // on an ideal robot: it has been found so
 
   // Host time and virtual time are made of each other here only.
   HostDuration OnHost(VirtualDuration computed) const {
@@ -74,7 +80,7 @@ class Meter {
   enum class Found {
     kGoesOn,     // it may run on
     kAtHorizon,  // it has to stop
-    kIsSilent,   // it computes on and on without a call, where computing takes no time: also this
+    kIsSilent,   // it computes on and on without a call, where computing takes no time
   };
 
   virtual ~Meter() = default;

@@ -96,7 +96,7 @@ struct Task : HostThread {
   VirtualTime beside_horizon;
   bool died_beside = false;      // with its process, in the turn that it has there
   HostDuration ran;              // in its last turn
-  bool spins = false;            // computes without calls where computing takes no time
+  bool spins = false;            // computes on and on on an ideal robot
   bool notified_early = false;   // has notified without being dispatched: answered at its dispatch
   bool executes = false;         // another program, perhaps: it has no handlers there
   bool has_signal = false;       // ours, to go to its gate, unless it has handled it by now
@@ -168,6 +168,7 @@ struct Process {
   // As long as its parent may not have been told.
   bool stop_is_news = false, continue_is_news = false;
   std::uint32_t dds_number = 0;  // in dds::Hub; 0: it has not joined
+  bool pays_for_silence = false;  // a client: its threads compute for long without calls
   bool stays_home = false;       // its threads do not compute ahead (computing_ahead.h)
   bool dds_warned = false;       // a client: of what it, or a descendant, sends
   bool has_erred = false;        // a client: it, or a descendant, was expelled
