@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "shm/set_costs.h"
+
 namespace tcs {
 
 namespace {
@@ -32,7 +34,8 @@ void FixedMeter::SetRates(const MeteredThread& thread, const SetCosts& costs,
   grant.ns_per_tick_q32 = 0;
   grant.check_after_ticks = ~std::uint64_t{0};
   grant.call_cost_ns = costs.call.ns();
-  grant.allocation_cost_ns = costs.allocation.ns();
+  grant.allocation_cost_ns =
+      costs.allocation.has_value() ? costs.allocation->ns() : shm::kUsualAllocationCost;
 }
 
 std::uint64_t FixedMeter::Begin(MeteredThread& thread, std::uint64_t tsc, bool, bool is_silent) {
@@ -50,12 +53,13 @@ HostDuration FixedMeter::TimeToLook(MeteredThread& thread, std::uint64_t, Progra
 Meter::Found FixedMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
                               const CpuClock& clock) {
   const shm::ClockReading now = shm::ReadClockAt(*thread.page, tsc);
-  if (HasMadeCalls(thread, now)) {
-    thread.silent_looks = 0;
-    thread.silent_from_ns = -1;
+  const bool has_made_calls = HasMadeCalls(thread, now);
+  if (thread.pays_for_silence) {
+    if (has_made_calls) thread.silent_from_ns = -1;
+    return LookAtSilent(thread, now, horizon, clock());
   }
-  if (thread.pays_for_silence) return LookAtSilent(thread, now, horizon, clock());
-  return ++thread.silent_looks < kSilentLooks ? Found::kGoesOn : Found::kIsSilent;
+  thread.silent_looks = has_made_calls ? 0 : thread.silent_looks + 1;
+  return thread.silent_looks < kSilentLooks ? Found::kGoesOn : Found::kIsSilent;
 }
 
 Meter::Found FixedMeter::LookAtSilent(MeteredThread& thread, const shm::ClockReading& now,

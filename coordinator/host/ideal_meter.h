@@ -13,7 +13,7 @@ class IdealMeter final : public FixedMeter {
   static constexpr HostDuration kLookAgainEvery = HostDuration::Milliseconds(1);  // from then on
 
   void SetRates(const MeteredThread& thread, const SetCosts&, ClockGrant& grant) const override {
-    FixedMeter::SetRates(thread, {}, grant);
+    FixedMeter::SetRates(thread, {.call = {}, .allocation = VirtualDuration()}, grant);
   }
   HostDuration TimeToLook(MeteredThread& thread, std::uint64_t, ProgramTime) override {
     return thread.is_silent ? kLookAgainEvery : kLookEvery;

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "coordinator/host/clock_grant.h"
 #include "coordinator/host/switch_costs.h"
@@ -72,9 +73,10 @@ class Meter {
   // The thread's own CPU clock, in nanoseconds, by a system call; -1 if it cannot be read any more.
   using CpuClock = std::function<std::int64_t()>;
 
-  // What the scenario says that calls and allocations cost.
+  // What the scenario says that calls and allocations cost; none: as shm/set_costs.h has it.
   struct SetCosts {
-    VirtualDuration call, allocation;
+    VirtualDuration call;
+    std::optional<VirtualDuration> allocation;
   };
 
   enum class Found {

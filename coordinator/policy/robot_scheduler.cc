@@ -505,7 +505,8 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
     if (glance.priority == own && takes_turns) {
       const VirtualTime due = std::min(wait.until, wait.next_expiry);
       if (due != kNever && yields && PreemptsOnWakeup(other, due - now)) {
-        if (MakesRoom(core, other, due)) limit = std::min(limit, std::max(due, now));
+        const VirtualTime until = due + lengths_.SlackOf(other.thread, due);
+        if (MakesRoom(core, other, due)) limit = std::min(limit, std::max(until, now));
       } else {
         limit = std::min(limit, std::max(due, turn_end));  // it has the next turn
       }

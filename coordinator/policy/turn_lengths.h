@@ -1,10 +1,11 @@
-// For how long threads run where they share something: each turn of equals on a core a quantum, and
-// as far as cores may be apart. From a seed both are a little more or less, the turns a quantum on
-// average.
+// For how long threads run where they share something: each turn of equals on a core a quantum,
+// unless an equal wakes before, and as far as cores may be apart. From a seed all three are a
+// little more or less, the turns a quantum on average.
 //
-// Under set costs a loop of a program takes the same time each round. Turns of one length would end
-// it at the same place each time: with a lock held, say, so that whoever runs next finds the lock
-// taken for ever. Pure: the same thread, or core, at the same time has the same length.
+// Under set costs a loop of a program takes the same time each round. Turns of one length, or
+// sleeps of one length beside it, would end it at the same place each time: with a lock held, say,
+// so that whoever runs next finds the lock taken for ever. Pure: the same thread, or core, at the
+// same time has the same length.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,9 @@ namespace tcs {
 class TurnLengths {
  public:
   static constexpr VirtualDuration kSpread = VirtualDuration::Milliseconds(1);
+  static constexpr VirtualDuration kSlack = VirtualDuration::Microseconds(50);  // as Linux has it
+
+  static constexpr VirtualDuration kShortStep = VirtualDuration::Microseconds(100);
 
   // None: they are all the same.
   explicit TurnLengths(std::optional<std::uint64_t> seed) : seed_(seed) {}
@@ -30,9 +34,15 @@ class TurnLengths {
     if (!vary()) return quantum;
     return quantum - kSpread / 2 + Drawn(kSpread, static_cast<std::uint64_t>(thread), begin);
   }
-  // How far a core goes at once, which others of the robot may be behind: half to all of it.
+  // A thread whose sleep is over then takes the core from an equal so much later.
+  VirtualDuration SlackOf(int thread, VirtualTime due) const {
+    if (!vary()) return {};
+    return Drawn(kSlack, static_cast<std::uint64_t>(thread) << 32, due);
+  }
+  // How far a core goes at once, which others of the robot may be behind: half to all of it, where
+  // that is not short.
   VirtualDuration OfStep(std::size_t core, VirtualTime begin, VirtualDuration most) const {
-    if (!vary()) return most;
+    if (!vary() || most <= kShortStep) return most;
     return most / 2 + Drawn(most - most / 2, ~static_cast<std::uint64_t>(core), begin);
   }
 
@@ -42,7 +52,8 @@ class TurnLengths {
     shm::Draws draws;
     draws.Seed(*seed_ + whose * 0x9e3779b97f4a7c15);
     draws.Seed(draws.Next() + static_cast<std::uint64_t>(when.ns()));
-    return VirtualNs(static_cast<std::int64_t>(draws.Next() % static_cast<std::uint64_t>(below.ns())));
+    return VirtualNs(
+        static_cast<std::int64_t>(draws.Next() % static_cast<std::uint64_t>(below.ns())));
   }
 
   std::optional<std::uint64_t> seed_;

@@ -19,7 +19,7 @@ class FixedMeterTest : public testing::Test {
     page_.base_tsc = meter_.Begin(thread_, 0, true, false);
   }
   ~FixedMeterTest() override {
-    if (!thread_.pays_for_silence) EXPECT_EQ(asked_, 0) << "a clock of the host has been asked";
+    EXPECT_TRUE(asked_ == 0 || thread_.pays_for_silence) << "a clock of the host has been asked";
   }
 
   // The timer has come so often, and nobody has made a call.
