@@ -109,6 +109,7 @@ class Engine {
   [[nodiscard]] std::string PrepareMemory();
   [[nodiscard]] std::string PrepareSignals();
   [[nodiscard]] std::string PrepareHostCpu();
+  std::optional<std::uint64_t> TurnsSeed() const;
   void MakeRobots();
   void TellOfWaits();
   void TellOfEnds();
@@ -172,6 +173,7 @@ class Engine {
   void Settle(Task& task);
   bool TakeNotesOf(Task& task);
   void TakeOutUntold(Task& task, const shm::ClockReading& before, HostDuration asked);
+  void ChargeSilence(Task& task);
   void StepAside(Task& task);
   void WakeSpinners();
 
