@@ -87,7 +87,7 @@ enum class NotificationKind : std::uint32_t {
                   // args[1]: its number, args[2]: 1 to keep the place of the last such wait;
                   // args[3]: 0, or 1 more than a descriptor whose file is kept as with
                   // KeepFiles::kForCall; -1: what is kept already
-  kWakeKey = 23,       // the object of args[0] and args[1] has been changed
+  kWakeKey = 23,  // the object of args[0] and args[1] has been changed
   kTimerOverrun = 24,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
                        // reply[0]: overruns of the signal accepted last
   // Of programs that speak DDS (dds_exchange.h).

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# natively.sh BUILD PROGRAM: the kernel is the reference for what PROGRAM expects.
+# natively.sh BUILD COMMAND...: the kernel is the reference for what COMMAND expects.
 set -u
 source "$(dirname -- "${BASH_SOURCE[0]}")/../steadily.sh"
-steadily "$1" timeout 19 "$2"
+steadily "$1" timeout 19 "${@:2}"

@@ -14,6 +14,13 @@ check() {
 check libtcs_preload.so exports.map 'libc\.so\.6'
 check libtcs_allocations.so allocations/exports.map 'libc\.so\.6'
 check libtcs_dds.so dds/exports.map '(libc|libstdc\+\+|libgcc_s|libddsc|ld-linux-x86-64)\.so\..*'
+# It calls nothing of its own by a name that another library could stand before: one that hands calls on would get them
+# again.
+for library in preload allocations; do
+  by_name=$(comm -12 <(readelf -rW "$build/lib/libtcs_$library.so" | awk '/JUMP_SLO|GLOB_DAT/ { sub("@.*", "", $5); print $5 }' |
+    LC_ALL=C sort -u) <(nm -D --defined-only "$build/lib/libtcs_$library.so" | awk '{ print $3 }' | LC_ALL=C sort))
+  [[ -z $by_name ]] || fail "libtcs_$library.so calls itself by name: $by_name"
+done
 # The shim is in programs without libddsc: it has names of it, but refers to none.
 refers=$(nm -D --undefined-only "$build/lib/libtcs_preload.so" | grep -E ' (dds|ddsi|ddsrt|rtps)_' || true)
 [[ -z $refers ]] || fail "the shim refers to symbols of libddsc: $refers"

@@ -88,6 +88,19 @@ if [[ -n $jemalloc ]]; then
   in_each_mode jemalloc_is_there
 fi
 
+# libfaketime hands calls on to the C library's other names for them: its date on top of the virtual time.
+faketime=$(ls /usr/lib/*/faketime/libfaketime.so.1 2>/dev/null | head -1)
+if [[ -n $faketime ]]; then
+  dates='import time; a = time.time(); time.sleep(1000); print(time.gmtime(a).tm_year, round(time.time() - a))'
+  faketime_shifts() {  # MODE
+    local says
+    says=$(timeout 30 "$tcsim" exec --accounting "$1" --date 2005-03-18 -- env LD_PRELOAD="$faketime" FAKETIME=+10y \
+      python3 -c "$dates" 2>&1)
+    [[ $(tail -1 <<<"$says") == "2015 1000" ]] || fail "$1: libfaketime: $says"
+  }
+  in_each_mode faketime_shifts
+fi
+
 # Programs linked to AddressSanitizer, and such that have it preloaded: it finds what it finds.
 command -v g++ >/dev/null || exit 0
 cat >checked.cc <<'CC'
