@@ -107,6 +107,7 @@ class Engine {
   [[nodiscard]] std::string PrepareMemory();
   [[nodiscard]] std::string PrepareSignals();
   [[nodiscard]] std::string PrepareHostCpu();
+  std::optional<std::uint64_t> TurnsSeed() const;
   void MakeRobots();
   void TellOfWaits();
   void TellOfEnds();

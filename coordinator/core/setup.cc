@@ -204,13 +204,20 @@ std::string Engine::PrepareSignals() {
   return {};
 }
 
+// Of the next robot.
+std::optional<std::uint64_t> Engine::TurnsSeed() const {
+  if (!run_.IsFixed()) return std::nullopt;
+  return run_.scenario.seed * 0x9e3779b97f4a7c15 + run_.robots.size();
+}
+
 void Engine::MakeRobots() {
   for (const RobotSpec& spec : run_.scenario.robots) {
     const auto cores = static_cast<std::uint32_t>(spec.cores);
     Robot& robot = run_.robots.emplace_back(
-        spec.name, spec.speed, RobotScheduler(cores, !run_.IsCallback(), [this](int order) {
-          return waker_.WaitOf(run_.table.At(order));
-        }));
+        spec.name, spec.speed,
+        RobotScheduler(
+            cores, !run_.IsCallback(),
+            [this](int order) { return waker_.WaitOf(run_.table.At(order)); }, TurnsSeed()));
     robot.number = static_cast<std::uint32_t>(run_.robots.size());
     robot.is_ideal = spec.is_ideal;
     for (std::uint32_t core = 0; core < cores; ++core) {
