@@ -36,7 +36,9 @@ void NoteReceived(GuestThread& thread, shm::Receipts::Of of) {
 
 void NoteSlept(GuestThread& thread, std::int64_t from_ns, std::int64_t cpu_ns,
                std::int64_t until_ns) {
-  if (g_header->notes_activity == 0 || until_ns == from_ns) return;
+  if (until_ns == from_ns) return;
+  thread.slot->receipts.allocations = 0;
+  if (g_header->notes_activity == 0) return;
   shm::NoteWoken(thread.slot->receipts);
   Add(thread, {from_ns, cpu_ns, until_ns, shm::Receipts::Of::kSleep, 0, thread.slot->work});
 }

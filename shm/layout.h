@@ -209,7 +209,8 @@ struct ClockPage {
   std::int64_t children_cpu_ns;      // charged to the process's ended children
   // Written by the thread: the furthest that a read went beyond what was safe.
   std::atomic<std::int64_t> staleness_ns;
-  // Written by the coordinator at each dispatch: of each allocation; 0 under measured accounting.
+  // Written by the coordinator at each dispatch: of each allocation (set_costs.h); 0 under measured
+  // accounting.
   std::int64_t allocation_cost_ns;
   std::uint64_t counts_work;  // not 0: the thread keeps its WorkCounts; kBeginsInCall
   // Nothing is produced before this any more in sockets that are local to the robot.

@@ -59,6 +59,7 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   const ProgramTime now = clock.At(cpu.progress);
   MeteredThread& metered = task.metered;
   if (metered.host_origin_ns < 0) metered.host_origin_ns = HostClockOf(task);
+  metered.pays_for_silence = task.process->client->pays_for_silence;
   ClockGrant& grant = task.grant;
   grant.base_time_ns = (now + task.debt).ns();
   grant.base_cpu_ns = task.charged.ns();
@@ -314,6 +315,10 @@ void Engine::AwaitStop(Task& task) {
       continue;
     }
     const Meter::Found found = host_cpu_.Look(task, OwnHorizon(), CpuClockOf(task));
+    if (found == Meter::Found::kIsSilent && !task.process->robot->is_ideal) {
+      ChargeSilence(task);
+      continue;
+    }
     task.spins = found == Meter::Found::kIsSilent;
     if (found != Meter::Found::kGoesOn) {
       run_.turn.timed_out = true;
@@ -322,26 +327,29 @@ void Engine::AwaitStop(Task& task) {
   }
 }
 
-// Under set costs computing takes no time, so a thread that spins on what others write to memory
-// would spin for ever. It waits until somebody has run, and looks again, as long as it makes no
-// call.
+// Under set costs a thread that spins on what others write to memory would spin for ever, for
+// computing takes no time. From now on it does, in this client (fixed_meter.h).
+void Engine::ChargeSilence(Task& task) {
+  Process& client = *task.process->client;
+  client.pays_for_silence = task.metered.pays_for_silence = true;
+  run_.Warn(client.name +
+            " has computed for 5 s without a call or an allocation, which costs nothing under "
+            "--accounting fixed; from here on each half a millisecond of that, by the processor's "
+            "clock, costs it 0.5 ms, and the run may not repeat; run it with --accounting "
+            "measured");
+}
+
+// On an ideal robot computing never takes time. The thread waits until somebody has run, and looks
+// again, as long as it makes no call.
 void Engine::StepAside(Task& task) {
   if (run_.turn.HasSpoken() || task.state == TaskState::kDead) {
     task.spins = false;
     return;
   }
-  const Process& process = *task.process;
-  if (process.robot->is_ideal) {
-    run_.Warn(process.name +
-              " has computed for 10 s at one instant of virtual time; its robot is ideal, so the "
-              "world waits for it, but no longer than that; from here on it counts as waiting for "
-              "other programs");
-  } else {
-    run_.Warn(process.name +
-              " has computed for 5 s without a call or an allocation; under --accounting fixed "
-              "that counts as waiting for other programs, and makes the run depend on the host; "
-              "run it with --accounting measured");
-  }
+  run_.Warn(task.process->name +
+            " has computed for 10 s at one instant of virtual time; its robot is ideal, so the "
+            "world waits for it, but no longer than that; from here on it counts as waiting for "
+            "other programs");
   waker_.Wait(task, {awaited::OthersRun{}});
   has_spinners_ = true;
   waker_.Refresh(*task.process->robot);

@@ -171,6 +171,7 @@ class Engine {
   void Settle(Task& task);
   bool TakeNotesOf(Task& task);
   void TakeOutUntold(Task& task, const shm::ClockReading& before, HostDuration asked);
+  void ChargeSilence(Task& task);
   void StepAside(Task& task);
   void WakeSpinners();
 

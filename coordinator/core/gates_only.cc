@@ -105,9 +105,12 @@ Reactor::Found Engine::EndCall(Reactor::Found found) {
 // gate, and waited for, so that nobody runs beside it. Where it does not come (its program blocks
 // the signal, or the kernel has it) it computes on, and owes what it computes.
 void Engine::BringToGate(Task& task) {
-  const bool computes = run_.Preempts() && task.slot >= 0 && Waker::IsRunnable(task) &&
-                        !task.parked && !run_.turn.HasSpoken() && !task.is_brief &&
-                        !task.executes && !task.process->expelled;
+  // Where computing costs nothing, it may compute on, unless it pays for that (fixed_meter.h).
+  const bool is_charged =
+      run_.Preempts() || (run_.gates_only && task.metered.pays_for_silence && run_.turn.timed_out);
+  const bool computes = is_charged && task.slot >= 0 && Waker::IsRunnable(task) && !task.parked &&
+                        !run_.turn.HasSpoken() && !task.is_brief && !task.executes &&
+                        !task.process->expelled;
   if (!computes || !task.HasOwnClock() || ThreadState(task.tid) != 'R') return;
   const HostDuration sent = HostNs(HostClockOf(task));
   run_.turn.is_sent_to_gate = task.has_signal = true;

@@ -96,7 +96,7 @@ struct Task : HostThread {
   VirtualTime beside_horizon;
   bool died_beside = false;      // with its process, in the turn that it has there
   HostDuration ran;              // in its last turn
-  bool spins = false;            // computes without calls where computing takes no time
+  bool spins = false;            // computes on and on on an ideal robot
   bool notified_early = false;   // has notified without being dispatched: answered at its dispatch
   bool executes = false;         // another program, perhaps: it has no handlers there
   bool has_signal = false;       // ours, to go to its gate, unless it has handled it by now
@@ -151,7 +151,8 @@ struct Process {
   std::string name;
   int priority = 0;
   VirtualDuration deadline;  // its client's, under scheduler: edf; 0: none
-  VirtualDuration call_cost, allocation_cost;
+  VirtualDuration call_cost;
+  std::optional<VirtualDuration> allocation_cost;
   bool is_bare = false;  // its program runs without the shim (bare_programs.h)
   bool patch_vdso = false, dds_endpoints = false;
   shm::Draws draws;  // by trapped calls, where they repeat
@@ -167,11 +168,12 @@ struct Process {
   bool stopped = false;               // by a signal, when last looked at
   // As long as its parent may not have been told.
   bool stop_is_news = false, continue_is_news = false;
-  std::uint32_t dds_number = 0;  // in dds::Hub; 0: it has not joined
-  bool stays_home = false;       // its threads do not compute ahead (computing_ahead.h)
-  bool dds_warned = false;       // a client: of what it, or a descendant, sends
-  bool has_erred = false;        // a client: it, or a descendant, was expelled
-  Task* deliverer = nullptr;     // its thread that takes what is for it
+  std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
+  bool pays_for_silence = false;  // a client: its threads compute for long without calls
+  bool stays_home = false;        // its threads do not compute ahead (computing_ahead.h)
+  bool dds_warned = false;        // a client: of what it, or a descendant, sends
+  bool has_erred = false;         // a client: it, or a descendant, was expelled
+  Task* deliverer = nullptr;      // its thread that takes what is for it
   bool dead = false;
   bool killed = false;                 // at the end of its grace
   bool expelled = false;               // killed, for what it has written into shared memory
