@@ -41,7 +41,7 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SlurmdParameters=config_overrides
 SlurmdTimeout=5
-MessageTimeout=30
+MessageTimeout=5
 KillWait=5
 SchedulerParameters=batch_sched_delay=0,sched_interval=1
 NodeName=n[1-$last] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + last))] CPUs=1

@@ -50,7 +50,7 @@ fi
 long() { timeout --foreground "$limit" "$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 1000h --launcher slurm "$@"; }
 claim() { find "$out/$1/slurm" -path '*/claims/*' -printf '%l\n' 2>/dev/null | head -n 1 || true; }
 begun() {  # FOLDER [JOB]: waits for a trial that another job has begun; that is `job` then
-  for _ in $(seq 300); do
+  for _ in $(seq 900); do
     job=$(claim "$1")
     [[ -n $job && $job != "${2:-}" ]] && return
     sleep 0.1
