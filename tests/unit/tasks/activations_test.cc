@@ -20,6 +20,7 @@ class ActivationsTest : public testing::Test {
  protected:
   ActivationsTest() {
     process_.name = "planner";
+    process_.robot = &robot_;
     task_.process = &process_;
     task_.slot = 0;
     task_.slot_memory = slot_.get();
@@ -53,6 +54,9 @@ class ActivationsTest : public testing::Test {
   const std::string path_ = testing::TempDir() + "activations_" +
                             testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv";
   std::unique_ptr<shm::ThreadSlot> slot_ = std::make_unique<shm::ThreadSlot>();
+  Robot robot_{"robot", 1.0, RobotScheduler(1, false, [](RobotScheduler::Thread) {
+                 return RobotScheduler::Wait{};
+               })};
   Process process_;
   Task task_;
   Activations activations_{false};
