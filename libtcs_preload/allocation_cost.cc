@@ -3,6 +3,7 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/virtual_clock.h"
+#include "shm/set_costs.h"
 
 using namespace tcs::preload;
 
@@ -11,7 +12,6 @@ namespace {
 using tcs::shm::ClockPage;
 using tcs::shm::WorkCounts;
 
-// An allocation stands for what a program computes until the next one, 2 us unless told.
 constexpr std::int64_t kLocksPerAllocation = WorkCounts::kLocksPerAllocation;
 // So many locks in a row without anything that costs: it waits for others by looking again and
 // again. The locks between a program's calls and allocations cost nothing; how many they are may
@@ -56,7 +56,9 @@ TCS_EXPORT void tcs_charge_allocation() noexcept {
   ClockPage& page = thread->slot->clock;
   if (page.allocation_cost_ns == 0) return;
   EndLastCall(*thread);
-  Charge(page, page.allocation_cost_ns);
+  std::uint32_t& number = thread->slot->receipts.allocations;
+  if (number <= tcs::shm::kShortAllocations) ++number;
+  Charge(page, tcs::shm::AllocationCostNs(page.allocation_cost_ns, number));
   NowNs(*thread);
 }
 
@@ -75,8 +77,6 @@ TCS_EXPORT void tcs_charge_lock() noexcept {
     return;
   }
   EndLastCall(*thread);
-  // At least something: who waits in such a loop must get on, however little allocations cost.
-  const std::int64_t cost_ns = page.allocation_cost_ns / kLocksPerAllocation;
-  Charge(page, cost_ns > 0 ? cost_ns : 1);
+  Charge(page, tcs::shm::LockCostNs(page.allocation_cost_ns, kLocksPerAllocation));
   thread->locks_at = NowNs(*thread);
 }

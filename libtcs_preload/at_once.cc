@@ -27,10 +27,11 @@ std::size_t BytesOf(const iovec* iov, int count) {
 
 }  // namespace
 
-long ReadAtOnce(int fd, const iovec* iov, int count) {
-  const long answer = RawSyscall(SYS_preadv2, fd, Arg(iov), count, -1, -1, RWF_NOWAIT);
-  // Terminals and some others do not have this form; but it has checked whether they can be read.
-  if (answer != -EOPNOTSUPP) return answer;
+long TryRead(int fd, const iovec* iov, int count) {
+  return RawSyscall(SYS_preadv2, fd, Arg(iov), count, -1, -1, RWF_NOWAIT);
+}
+
+long TryReadWithoutForm(int fd, const iovec* iov, int count) {
   return IsTimerFd(fd) && BytesOf(iov, count) < sizeof(std::uint64_t) ? -EINVAL : -EAGAIN;
 }
 

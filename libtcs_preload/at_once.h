@@ -8,8 +8,11 @@
 
 namespace tcs::preload {
 
-// read and readv. A `count` below 0 or too large is asked for like any other.
-long ReadAtOnce(int fd, const iovec* iov, int count);
+// read and readv. A `count` below 0 or too large is asked for like any other. -EOPNOTSUPP: the
+// descriptor has no such form, as terminals and some others; but it can be read.
+long TryRead(int fd, const iovec* iov, int count);
+// What is wrong with such a read, or -EAGAIN.
+long TryReadWithoutForm(int fd, const iovec* iov, int count);
 
 // True if accept4 would wait for a connection.
 bool AcceptWaits(int fd, int flags);

@@ -18,8 +18,16 @@ using namespace tcs::preload;
 
 namespace {
 
+// A thread may wait in a call on what is about to be closed or replaced.
+void NoteChange() {
+  if (t_thread.slot == nullptr) return;
+  std::atomic<std::uint32_t>& changed = t_thread.slot->descriptors_changed;
+  changed.store(changed.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+}
+
 // What was open for others to see is about to be closed.
 void BeginClosing(int fd) {
+  NoteChange();
   if (g_header == nullptr || g_header->gates_only == 0 || !CanWait(fd)) return;
   if (GuestThread* t = Current(); t != nullptr) BeginChange(*t);
 }
@@ -42,6 +50,7 @@ long MayUnlock(long result) {
 
 long CloseRange(unsigned first, unsigned last, unsigned flags) {
   if (first > last) return -EINVAL;
+  NoteChange();
   if (g_header != nullptr && g_header->gates_only != 0) {
     if (GuestThread* t = Current(); t != nullptr) BeginChange(*t);
   }

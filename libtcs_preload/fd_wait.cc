@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 
+#include "libtcs_preload/call_file.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -40,7 +41,9 @@ int GatherInEpoll(const pollfd* fds, unsigned long count) {
   return set;
 }
 
-WaitResult ToResult(WakeReason reason) {
+}  // namespace
+
+WaitResult ResultOf(WakeReason reason) {
   switch (reason) {
     case WakeReason::kDeadline:
       return WaitResult::kTimedOut;
@@ -53,10 +56,9 @@ WaitResult ToResult(WakeReason reason) {
   return WaitResult::kRetry;
 }
 
-}  // namespace
-
 WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long count,
                       std::int64_t deadline_ns, const Waiting& waiting) {
+  thread.keeps_files = false;
   if (IsShutDown()) {
     const timespec turn{0, 10'000'000};
     const long n = RawSyscall(SYS_ppoll, Arg(const_cast<pollfd*>(fds)), static_cast<long>(count),
@@ -73,33 +75,41 @@ WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long coun
     signals |= its;
     rearm |= its != 0 && is_epoll;
   }
+  shm::KeepFiles keep = waiting.keep;
   int gathered = -1;
   for (unsigned long i = 0; i < count; ++i) {
     bool is_epoll = false;
-    if (fds[i].fd < 0 || (SignalsOf(fds[i].fd, &is_epoll) != 0 && !is_epoll)) continue;
+    if (fds[i].fd < 0) continue;
+    if (SignalsOf(fds[i].fd, &is_epoll) != 0 && !is_epoll) {
+      if (keep == shm::KeepFiles::kForCall) waited[n++] = shm::WaitFd{fds[i].fd, 0};
+      continue;
+    }
     if (n == shm::kMaxWaitFds) {
       gathered = GatherInEpoll(fds, count);
       waited[0] = shm::WaitFd{gathered, EPOLLIN};
       n = 1;
+      keep = shm::KeepFiles::kNot;
       break;
     }
     waited[n++] = shm::WaitFd{
         fds[i].fd, static_cast<std::uint32_t>(static_cast<unsigned short>(fds[i].events))};
   }
-  const Reply reply =
-      Exchange(thread, Request{.kind = NotificationKind::kWaitFds,
-                               .deadline_ns = deadline_ns,
-                               .args = {static_cast<std::int64_t>(waiting.event),
-                                        static_cast<std::int64_t>(signals), waiting.again ? 1 : 0},
-                               .fds = waited,
-                               .fd_count = n,
-                               .interruptible = true});
+  const Reply reply = Exchange(
+      thread,
+      Request{.kind = NotificationKind::kWaitFds,
+              .deadline_ns = deadline_ns,
+              .args = {static_cast<std::int64_t>(waiting.event), static_cast<std::int64_t>(signals),
+                       waiting.again ? 1 : 0, static_cast<std::int64_t>(keep)},
+              .fds = waited,
+              .fd_count = n,
+              .interruptible = true});
   thread.passes_on = reply.values[1] != 0;
+  thread.keeps_files = reply.values[0] != 0 && reply.reason != WakeReason::kSignal;
   if (gathered >= 0) RawSyscall(SYS_close, gathered);
   for (unsigned long i = 0; rearm && i < count; ++i) {
     if (fds[i].fd >= 0) RearmSignalFds(fds[i].fd);
   }
-  return ToResult(reply.reason);
+  return ResultOf(reply.reason);
 }
 
 void PassOn(GuestThread& thread) {
@@ -114,28 +124,36 @@ bool PollNow(int fd, short events) {
   return RawSyscall(SYS_ppoll, Arg(&probe), 1, Arg(&now), 0, 0) != 0;
 }
 
-FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns, bool looked) {
-  if (!looked && IsNonBlocking(fd)) return FdState::kReady;
+FdState AwaitEvent(CallFile& file, short events, std::int64_t deadline_ns, bool again) {
   const OneEvent event = (events & POLLIN) != 0 ? OneEvent::kForTheFirst : OneEvent::kForAll;
-  for (FdState state = FdState::kReady;; state = FdState::kWaited, looked = false) {
-    if (!looked && PollNow(fd, events)) return state;
-    const pollfd waited{fd, events, 0};
-    const bool again = state == FdState::kWaited;
-    switch (WaitForFds(thread, &waited, 1, deadline_ns, {event, again})) {
+  for (;;) {
+    switch (file.Wait(events, deadline_ns, {.event = event, .again = again})) {
       case WaitResult::kRetry:
-        break;
+        return FdState::kWaited;
       case WaitResult::kTimedOut:
-        if (PollNow(fd, events)) return FdState::kWaited;
-        Fail(EAGAIN);
-        return FdState::kFailed;
+        return FdState::kTimedOut;
       case WaitResult::kInterrupted:
         // As the kernel has it: with a timeout of its own a socket's wait is never made again.
         if (deadline_ns != shm::kNeverNs || !RestartsAfterSignal()) {
           Fail(EINTR);
           return FdState::kFailed;
         }
+        // What its number means now is looked for there.
+        if (PollNow(file.fd(), events)) return FdState::kWaited;
         break;
     }
+  }
+}
+
+FdState AwaitFd(CallFile& file, short events, std::int64_t deadline_ns) {
+  if (IsNonBlocking(file.fd()) || PollNow(file.fd(), events)) return FdState::kReady;
+  for (bool again = false;; again = true) {
+    const FdState state = AwaitEvent(file, events, deadline_ns, again);
+    if (state == FdState::kFailed) return state;
+    if (PollNow(file.fd(), events)) return FdState::kWaited;
+    if (state != FdState::kTimedOut) continue;
+    Fail(EAGAIN);
+    return FdState::kFailed;
   }
 }
 
@@ -163,10 +181,14 @@ bool IsNonBlocking(int fd) {
   return flags < 0 || (flags & O_NONBLOCK) != 0;
 }
 
-bool CanWait(int fd, bool* is_socket) {
+bool CanWait(int fd, FdKind* kind) {
   struct stat status;
   if (RawSyscall(SYS_fstat, fd, Arg(&status)) != 0) return false;
-  if (is_socket != nullptr) *is_socket = S_ISSOCK(status.st_mode);
+  if (kind != nullptr) {
+    *kind = S_ISSOCK(status.st_mode)         ? FdKind::kSocket
+            : (status.st_mode & S_IFMT) == 0 ? FdKind::kWithoutName
+                                             : FdKind::kOther;
+  }
   return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode);
 }
 

@@ -9,7 +9,10 @@
 
 namespace tcs::preload {
 
+class CallFile;
+
 enum class WaitResult { kRetry, kTimedOut, kInterrupted };
+WaitResult ResultOf(shm::WakeReason reason);
 
 // Stops the thread until one of `fds` (negative ones are passed over) may be ready, one of
 // `waiting`'s signals, which the thread blocks, is pending, or `deadline_ns` is reached. kRetry:
@@ -25,18 +28,23 @@ struct Waiting {
   OneEvent event = OneEvent::kForAll;
   bool again = false;
   unsigned long signals = 0;  // bit 0 is signal 1
+  // Of the files whose numbers mean others afterwards, or none (GuestThread::keeps_files).
+  shm::KeepFiles keep = shm::KeepFiles::kNot;
 };
 WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long count,
                       std::int64_t deadline_ns, const Waiting& waiting = {});
 void PassOn(GuestThread& thread);
 
-// Waits until `fd` shows one of `events`, unless it is non-blocking. kReady: it did at once, or
+// Waits until the file shows one of `events`, unless it is non-blocking. kReady: it did at once, or
 // waiting is not wanted: hold, then make the call. kWaited: make the call now. kFailed: errno is
-// set (EAGAIN past `deadline_ns`, EINTR). `looked`: the caller has just found that it is none of
-// the former two.
-enum class FdState { kReady, kWaited, kFailed };
-FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns,
-                bool looked = false);
+// set (EAGAIN past `deadline_ns`, EINTR).
+enum class FdState { kReady, kWaited, kTimedOut, kFailed };
+FdState AwaitFd(CallFile& file, short events, std::int64_t deadline_ns);
+
+// The same for a caller that has found nothing, and finds out by itself whether there is something
+// now. kWaited: there may be. kTimedOut: the same, for the last time. `again`: it has waited so
+// before, and found nothing.
+FdState AwaitEvent(CallFile& file, short events, std::int64_t deadline_ns, bool again);
 
 // True if `fd` shows one of `events` now.
 bool PollNow(int fd, short events);
@@ -50,8 +58,9 @@ bool HoldForReadFrom(GuestThread& thread, int fd, bool socket);
 bool IsNonBlocking(int fd);
 
 // True if calls on `fd` can wait for another program or thread: sockets, pipes, terminals, event
-// descriptors. `is_socket` is told which of them, if given.
-bool CanWait(int fd, bool* is_socket = nullptr);
+// descriptors. `kind` is told which of them, if given.
+enum class FdKind { kSocket, kWithoutName, kOther };  // without: event descriptors and their like
+bool CanWait(int fd, FdKind* kind = nullptr);
 
 // The descriptor's SO_RCVTIMEO or SO_SNDTIMEO as a deadline from now.
 std::int64_t SocketDeadline(GuestThread& thread, int fd, int option);

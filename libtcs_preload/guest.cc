@@ -12,6 +12,7 @@
 #include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/vdso.h"
+#include "libtcs_preload/virtual_clock.h"
 #include "shm/clock_page.h"
 
 namespace tcs::preload {
@@ -93,7 +94,10 @@ void CountCall(GuestThread& thread) {
   }
   ++thread.slot->work.calls;
   shm::ClockPage& page = thread.slot->clock;
-  if (page.call_cost_ns != 0) Charge(page, page.call_cost_ns);
+  if (page.call_cost_ns == 0) return;
+  Charge(page, page.call_cost_ns);
+  // Not at the next look at a clock: that may be at the same place of a loop each time.
+  NowNs(thread);
 }
 
 void DieWithoutCoordinator(const char* what) {

@@ -4,6 +4,7 @@
 #include <mqueue.h>
 #include <poll.h>
 
+#include "libtcs_preload/call_file.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/fd_wait.h"
@@ -34,18 +35,19 @@ int ToDeadline(const timespec* given, std::int64_t* deadline_ns) {
   return IsValid(timeout) ? 0 : EINVAL;
 }
 
-// Makes `call` until it does not have to wait any more. It returns -ETIMEDOUT where it would.
+// Makes `call(queue)` until it does not have to wait any more. It returns -ETIMEDOUT where it
+// would.
 template <class Call>
 long WaitAndCall(GuestThread& t, mqd_t queue, short events, std::int64_t deadline_ns, Call call) {
+  CallFile file(t, queue);
   for (;;) {
-    const long result = call();
+    const long result = call(file.fd());
     if (result != -ETIMEDOUT) return result;
-    const pollfd waited{queue, events, 0};
-    switch (WaitForFds(t, &waited, 1, deadline_ns)) {
+    switch (file.Wait(events, deadline_ns, {})) {
       case WaitResult::kRetry:
         break;
       case WaitResult::kTimedOut:
-        return call();
+        return call(file.fd());
       case WaitResult::kInterrupted:
         if (!RestartsAfterSignal()) return -EINTR;
         break;
@@ -57,8 +59,8 @@ long Receive(GuestThread& t, mqd_t queue, char* text, std::size_t size, unsigned
              const timespec* timeout) {
   std::int64_t deadline;
   if (const int error = ToDeadline(timeout, &deadline); error != 0) return -error;
-  auto call = [&] {
-    return RawSyscall(SYS_mq_timedreceive, queue, Arg(text), static_cast<long>(size), Arg(priority),
+  const auto call = [&](mqd_t from) {
+    return RawSyscall(SYS_mq_timedreceive, from, Arg(text), static_cast<long>(size), Arg(priority),
                       Arg(&kLongAgo));
   };
   // A more urgent message than the one that is there may still be on its way.
@@ -66,7 +68,7 @@ long Receive(GuestThread& t, mqd_t queue, char* text, std::size_t size, unsigned
   const long result = WaitAndCall(t, queue, POLLIN, deadline, call);
   if (result != -EAGAIN) return result;
   HoldForRead(t);
-  return call();
+  return call(queue);
 }
 
 long Send(GuestThread& t, mqd_t queue, const char* text, std::size_t size, unsigned priority,
@@ -77,9 +79,9 @@ long Send(GuestThread& t, mqd_t queue, const char* text, std::size_t size, unsig
   // The kernel may send a signal with it: see kill.cc.
   const bool notifies = g_header->queues_notify.load(std::memory_order_relaxed) != 0;
   std::atomic<std::uint32_t>& signals = t.slot->signals;
-  const long result = WaitAndCall(t, queue, POLLOUT, deadline, [&] {
+  const long result = WaitAndCall(t, queue, POLLOUT, deadline, [&](mqd_t to) {
     if (notifies) signals.fetch_add(1, std::memory_order_relaxed);
-    const long sent = RawSyscall(SYS_mq_timedsend, queue, Arg(text), static_cast<long>(size),
+    const long sent = RawSyscall(SYS_mq_timedsend, to, Arg(text), static_cast<long>(size),
                                  static_cast<long>(priority), Arg(&kLongAgo));
     if (sent != 0) signals.fetch_sub(1, std::memory_order_relaxed);
     return sent;

@@ -10,6 +10,7 @@
 
 #include <utility>
 
+#include "libtcs_preload/call_file.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
@@ -63,6 +64,32 @@ int CallWithMask(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, 
   return static_cast<int>(ToErrno(found));
 }
 
+// The files that poll or select has found under the numbers that it was given. It looks for them by
+// their numbers each time, but is woken by the files only.
+class PolledFiles {
+ public:
+  explicit PolledFiles(GuestThread& thread) : thread_(thread) {}
+  ~PolledFiles() {
+    if (are_kept_) LeaveFiles(thread_);
+  }
+  PolledFiles(const PolledFiles&) = delete;
+  PolledFiles& operator=(const PolledFiles&) = delete;
+
+  WaitResult Wait(const pollfd* fds, unsigned long count, std::int64_t deadline_ns,
+                  unsigned long signals) {
+    using tcs::shm::KeepFiles;
+    const WaitResult result = WaitForFds(
+        thread_, fds, count, deadline_ns,
+        {.signals = signals, .keep = are_kept_ ? KeepFiles::kAgain : KeepFiles::kForPoll});
+    are_kept_ = thread_.keeps_files;
+    return result;
+  }
+
+ private:
+  GuestThread& thread_;
+  bool are_kept_ = false;
+};
+
 bool IsReadableMask(const sigset_t* mask) { return mask == nullptr || CanRead(mask, 8); }
 
 int PollNs(GuestThread& t, pollfd* fds, nfds_t count, std::int64_t timeout_ns,
@@ -74,9 +101,10 @@ int PollNs(GuestThread& t, pollfd* fds, nfds_t count, std::int64_t timeout_ns,
   auto hold = [&] {
     if (!AreSafeLooks(t, fds, count, NowNs(t))) HoldForRead(t);
   };
+  PolledFiles files(t);
   return CallWithMask(t, timeout_ns, mask, true, probe, hold, probe,
                       [&](std::int64_t deadline, unsigned long signals) {
-                        return WaitForFds(t, fds, count, deadline, {.signals = signals});
+                        return files.Wait(fds, count, deadline, signals);
                       });
 }
 
@@ -85,11 +113,14 @@ int SelectNs(GuestThread& t, int n, fd_set* r, fd_set* w, fd_set* e, std::int64_
   SelectSets sets(n, r, w, e);
   if (!IsReadableMask(mask)) return Fail(EFAULT);
   if (sets.error() != 0) return Fail(sets.error());
-  auto probe = [&] { return sets.Probe(); };
+  bool has_waited = false;
+  PolledFiles files(t);
+  auto probe = [&] { return has_waited ? sets.ProbeAgain() : sets.Probe(); };
   auto wait = [&](std::int64_t deadline, unsigned long signals) {
+    has_waited = true;
     unsigned long count = 0;
     const pollfd* wanted = sets.Wanted(&count);
-    return WaitForFds(t, wanted, count, deadline, {.signals = signals});
+    return files.Wait(wanted, count, deadline, signals);
   };
   auto hold = [&] { HoldForRead(t); };
   const int found = CallWithMask(t, timeout_ns, mask, true, probe, hold, probe, wait);
@@ -114,13 +145,13 @@ int EpollNs(GuestThread& t, int epfd, epoll_event* events, int max, std::int64_t
     return static_cast<int>(ToErrno(RawSyscall(SYS_epoll_wait, epfd, Arg(events), max, 0)));
   }
   bool again = false;
+  CallFile file(t, epfd, tcs::shm::KeepFiles::kForSet);
   const int found = CallWithMask(
       t, timeout_ns, mask, false, [&] { return PeekEvents(epfd); }, [&] { HoldForRead(t); },
-      [&] { return RawSyscall(SYS_epoll_wait, epfd, Arg(events), max, 0); },
+      [&] { return RawSyscall(SYS_epoll_wait, file.fd(), Arg(events), max, 0); },
       [&](std::int64_t deadline, unsigned long signals) {
-        const pollfd set{epfd, POLLIN, 0};
-        return WaitForFds(t, &set, 1, deadline,
-                          {OneEvent::kForTheLast, std::exchange(again, true), signals});
+        return file.Wait(POLLIN, deadline,
+                         {OneEvent::kForTheLast, std::exchange(again, true), signals});
       });
   PassOn(t);
   return found;

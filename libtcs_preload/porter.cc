@@ -35,15 +35,17 @@ long Clone(long flags, char* stack, void (*run)(), std::atomic<int>* tid) {
   long result;
   register long r10 __asm__("r10") = Arg(tid);
   register long r8 __asm__("r8") = 0;
+  register long r9 __asm__("r9") = static_cast<long>(shm::kOwnCallMark);
   __asm__ volatile(
       "syscall\n\t"
+      "xor %%r9d, %%r9d\n\t"
       "test %%rax, %%rax\n\t"
       "jnz 1f\n\t"
       "xor %%ebp, %%ebp\n\t"
       "call *%[run]\n\t"
       "ud2\n"
       "1:"
-      : "=a"(result)
+      : "=a"(result), "+r"(r9)
       : "a"(SYS_clone), "D"(flags), "S"(stack + kStackSize), "d"(Arg(tid)), "r"(r10),
         "r"(r8), [run] "b"(run)
       : "rcx", "r11", "memory", "cc");

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <sys/mman.h>
 
+#include "libtcs_preload/call_file.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -72,7 +73,8 @@ void* RunHelper(void* raw) {
   while (StateOf(timer) == PosixTimer::kLive) {
     GuestThread* t = Current();
     if (t == nullptr || IsShutDown()) break;
-    AwaitFd(*t, timer.timer_fd, POLLIN, shm::kNeverNs);
+    CallFile file(*t, timer.timer_fd);
+    AwaitFd(file, POLLIN, shm::kNeverNs);
     std::uint64_t count = 0;
     if (RawSyscall(SYS_read, timer.timer_fd, Arg(&count), sizeof count) != sizeof count) break;
     if (StateOf(timer) != PosixTimer::kLive) break;

@@ -46,10 +46,15 @@ void StopHere(int signal, siginfo_t* info, void* context) {
     if (g_libcs != nullptr) g_libcs(signal, info, context);
     return;
   }
-  // Of a child by fork its parent's thread still stands here.
-  if (g_process->mode != ProcessState::kAttached || t_thread.attaching) return;
+  if (t_thread.attaching) return;
+  // The thread, or its process, was made past the shim and computes: it goes to the gate by
+  // attaching. Of a child by fork its parent's thread still stands here.
+  if (g_process->mode != ProcessState::kAttached || t_thread.slot == nullptr) {
+    if (!IsShutDown()) Current();
+    return;
+  }
   GuestThread& thread = t_thread;
-  if (thread.slot == nullptr || IsShutDown()) return;
+  if (IsShutDown()) return;
   if (!IsForThisDispatch(*thread.slot, *info)) return;
   if (IsAtGate(thread)) {
     // With levels a signal of the program's has brought it here, whose handler is to run when the

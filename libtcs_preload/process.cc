@@ -31,6 +31,15 @@ extern char** environ;
 
 namespace tcs::preload {
 
+// A handler may make one, too, while the thread does.
+void BeginAnnouncement(GuestThread* thread) {
+  if (thread != nullptr) thread->slot->announces.fetch_add(1, std::memory_order_relaxed);
+}
+
+void EndAnnouncement(GuestThread* thread) {
+  if (thread != nullptr) thread->slot->announces.fetch_sub(1, std::memory_order_relaxed);
+}
+
 void TellSpawned(GuestThread& t, pid_t pid) {
   if (pid > 0) Exchange(t, Request{.kind = NotificationKind::kSpawned, .args = {pid}});
 }
@@ -82,6 +91,7 @@ int SpawnWithShim(Real real, pid_t* pid, const char* program,
                   char* const argv[], char* const envp[]) {
   const Entered t;
   const EnvironmentWithShim environment(envp);
+  const Announcement announcement(t);
   pid_t child = 0;
   const int error = real()(&child, program, actions, attributes, argv, environment.get());
   if (pid != nullptr && error == 0) *pid = child;
@@ -93,11 +103,13 @@ int SpawnWithShim(Real real, pid_t* pid, const char* program,
 
 TCS_EXPORT pid_t fork(void) noexcept {
   const Entered t;
+  BeginAnnouncement(t);
   const pid_t pid = TCS_REAL(fork)();
   if (pid == 0) {
     Current();  // the child comes to its own slot, and stops until it is dispatched
   } else if (t != nullptr) {
     TellSpawned(*t, pid);
+    EndAnnouncement(t);
   }
   return pid;
 }

@@ -1,7 +1,5 @@
 #include "libtcs_preload/receipts.h"
 
-#include <sys/stat.h>
-
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/timer_fds.h"
@@ -36,16 +34,19 @@ void NoteReceived(GuestThread& thread, shm::Receipts::Of of) {
 
 void NoteSlept(GuestThread& thread, std::int64_t from_ns, std::int64_t cpu_ns,
                std::int64_t until_ns) {
-  if (g_header->notes_activity == 0 || until_ns == from_ns) return;
+  if (until_ns == from_ns) return;
+  thread.slot->receipts.allocations = 0;
+  if (g_header->notes_activity == 0) return;
   shm::NoteWoken(thread.slot->receipts);
   Add(thread, {from_ns, cpu_ns, until_ns, shm::Receipts::Of::kSleep, 0, thread.slot->work});
 }
 
-void NoteReceivedFrom(GuestThread& thread, int fd) {
-  if (IsTimerFd(fd)) return NoteReceived(thread, shm::Receipts::Of::kTimer);
-  struct stat status;
-  if (RawSyscall(SYS_fstat, fd, Arg(&status)) == 0 && (status.st_mode & S_IFMT) == 0) return;
-  NoteReceived(thread);
+void NoteReceivedFrom(GuestThread& thread, int fd, bool has_name) {
+  if (has_name) {
+    NoteReceived(thread);
+  } else if (IsTimerFd(fd)) {
+    NoteReceived(thread, shm::Receipts::Of::kTimer);
+  }
 }
 
 }  // namespace tcs::preload

@@ -9,9 +9,9 @@ namespace tcs::preload {
 // The calling thread has received something that others, or a timer, have sent.
 void NoteReceived(GuestThread& thread, shm::Receipts::Of of = shm::Receipts::Of::kMessage);
 
-// The same for bytes that the thread has just read from a descriptor. Descriptors by which a
-// program's own threads wake each other (eventfd, signalfd) count for nothing.
-void NoteReceivedFrom(GuestThread& thread, int fd);
+// The same for bytes that the thread has just read from a descriptor that is no socket. Those by
+// which a program's own threads wake each other (eventfd, signalfd) count for nothing.
+void NoteReceivedFrom(GuestThread& thread, int fd, bool has_name);
 
 // It sleeps until then without asking for it; it began to, and had been charged that, before.
 void NoteSlept(GuestThread& thread, std::int64_t from_ns, std::int64_t cpu_ns,

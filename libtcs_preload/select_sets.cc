@@ -13,6 +13,8 @@ namespace tcs::preload {
 
 namespace {
 
+constexpr short kEvents[] = {POLLIN, POLLOUT, POLLPRI};  // of the sets
+
 // How many descriptors the kernel has room for in this process's table: of larger sets it looks at
 // no more, and touches no more of the program's memory.
 std::size_t RoomForDescriptors() {
@@ -114,13 +116,39 @@ long SelectSets::Probe() {
   return RawSyscall(SYS_select, static_cast<long>(count_), sets[0], sets[1], sets[2], Arg(&now));
 }
 
+long SelectSets::ProbeAgain() {
+  if (const long found = Probe(); found != -EBADF) return found;
+  const auto bit = [this](std::uint64_t* sets, int set, int fd) -> std::uint64_t& {
+    return Set(sets, set)[static_cast<std::size_t>(fd) / kWordBits];
+  };
+  unsigned long count = 0;
+  Wanted(&count);
+  for (unsigned long i = 0; i < count; ++i) {
+    const int fd = fds_[i].fd;
+    const bool is_closed = RawSyscall(SYS_fcntl, fd, F_GETFD) == -EBADF;
+    fds_[i].revents = is_closed ? fds_[i].events : 0;
+    for (int set = 0; is_closed && set < kSets; ++set) {
+      bit(wanted_, set, fd) &= ~(std::uint64_t{1} << (fd % kWordBits));
+    }
+  }
+  long found = Probe();
+  for (unsigned long i = 0; found >= 0 && i < count; ++i) {
+    for (int set = 0; set < kSets; ++set) {
+      if ((fds_[i].revents & kEvents[set]) == 0) continue;
+      bit(found_, set, fds_[i].fd) |= std::uint64_t{1} << (fds_[i].fd % kWordBits);
+      ++found;
+    }
+  }
+  return found;
+}
+
 const pollfd* SelectSets::Wanted(unsigned long* count) {
   *count = 0;
   for (std::size_t fd = 0; fd < count_; ++fd) {
     short events = 0;
-    if (Wants(0, fd)) events |= POLLIN;
-    if (Wants(1, fd)) events |= POLLOUT;
-    if (Wants(2, fd)) events |= POLLPRI;
+    for (int set = 0; set < kSets; ++set) {
+      if (Wants(set, fd)) events |= kEvents[set];
+    }
     if (events != 0) fds_[(*count)++] = pollfd{static_cast<int>(fd), events, 0};
   }
   return fds_;

@@ -22,6 +22,10 @@ class SelectSets {
   // What select finds at once, as the kernel returns it.
   long Probe();
 
+  // The same once the call has waited: what has been closed meanwhile is no error, but ready, and
+  // the call is over.
+  long ProbeAgain();
+
   // The descriptors of all three, as poll takes them. Valid while this object lives.
   const pollfd* Wanted(unsigned long* count);
 
@@ -50,7 +54,6 @@ class SelectSets {
   bool MakeRoomForWanted();
   std::uint64_t* Set(std::uint64_t* sets, int set) const { return sets + set * words_; }
   bool Wants(int set, std::size_t fd) const;
-
   fd_set* const user_[kSets];
   std::size_t count_, words_ = 0;
   int error_ = 0;

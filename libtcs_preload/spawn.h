@@ -1,4 +1,5 @@
-// Telling the coordinator of a new child: virtual time does not pass it by while it starts.
+// Telling the coordinator of new threads and children: they will attach, at their first turns. What
+// the kernel makes for a thread that says nothing of it has its place, and turns, without that.
 #pragma once
 
 #include <sys/types.h>
@@ -6,6 +7,23 @@
 #include "libtcs_preload/guest.h"
 
 namespace tcs::preload {
+
+// The thread makes one, of which it tells next. Between these two nothing else that it says counts
+// as such; null: it does not.
+void BeginAnnouncement(GuestThread* thread);
+void EndAnnouncement(GuestThread* thread);
+
+// The same for the end of a scope, which no child by fork comes to.
+class Announcement {
+ public:
+  explicit Announcement(GuestThread* thread) : thread_(thread) { BeginAnnouncement(thread_); }
+  ~Announcement() { EndAnnouncement(thread_); }
+  Announcement(const Announcement&) = delete;
+  Announcement& operator=(const Announcement&) = delete;
+
+ private:
+  GuestThread* const thread_;
+};
 
 void TellSpawned(GuestThread& thread, pid_t pid);
 

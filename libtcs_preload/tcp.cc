@@ -55,7 +55,7 @@ namespace tcs::preload {
 
 void SendAtOnce(int fd) { Set(fd, IPPROTO_TCP, TCP_NODELAY, 1); }
 
-void AcknowledgeAtOnce(int fd) { Set(fd, IPPROTO_TCP, TCP_QUICKACK, 1); }
+bool AcknowledgeAtOnce(int fd) { return Set(fd, IPPROTO_TCP, TCP_QUICKACK, 1) == 0; }
 
 bool IsTcp(int fd) {
   const int protocol = Get(fd, SOL_SOCKET, SO_PROTOCOL);

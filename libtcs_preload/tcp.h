@@ -7,8 +7,8 @@ namespace tcs::preload {
 // unacknowledged.
 void SendAtOnce(int fd);
 
-// The next read acknowledges what it takes.
-void AcknowledgeAtOnce(int fd);
+// The next read acknowledges what it takes. False: it is no TCP.
+bool AcknowledgeAtOnce(int fd);
 
 bool IsTcp(int fd);
 

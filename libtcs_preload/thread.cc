@@ -11,6 +11,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/pthread_id.h"
 #include "libtcs_preload/real.h"
+#include "libtcs_preload/spawn.h"
 
 using namespace tcs::preload;
 
@@ -67,10 +68,11 @@ class SchedulingAsked {
                    .args = {0, policy_, priority_, 1}};
   }
 
-  Request Announcement() const {
+  Request AnnouncementOf(pthread_t thread) const {
     const auto cores = static_cast<std::int64_t>(CoresIn(sizeof cores_, &cores_));
-    return Request{.kind = tcs::shm::NotificationKind::kSpawned,
-                   .args = {0, policy_, priority_, has_cores_ ? cores : 0}};
+    return Request{
+        .kind = tcs::shm::NotificationKind::kMadeThread,
+        .args = {static_cast<std::int64_t>(thread), policy_, priority_, has_cores_ ? cores : 0}};
   }
 
  private:
@@ -100,12 +102,13 @@ TCS_EXPORT int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
       return refused;
     }
   }
+  const Announcement announcement(t);
   const int error = TCS_REAL(pthread_create)(thread, attributes, RunThread, start);
   if (error != 0) {
     free(start);
     return error;
   }
   // From now on the coordinator knows of it, and does not let time pass it by.
-  Exchange(*t, asked.Announcement());
+  Exchange(*t, asked.AnnouncementOf(*thread));
   return 0;
 }

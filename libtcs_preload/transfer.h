@@ -6,6 +6,7 @@
 
 #include <cstddef>
 
+#include "libtcs_preload/call_file.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 
@@ -54,18 +55,20 @@ class Rest {
   iovec copy_[kCopied];
 };
 
-// `part(iov, count)` does what it can at once (-EAGAIN: nothing), the rest is waited for. A part
-// that the descriptor does not have (-EOPNOTSUPP), or that fails although the descriptor is ready,
-// is left to `whole`. Returns what the call returns to its caller, or -errno.
+// `part(fd, iov, count)` does what it can at once (-EAGAIN: nothing), the rest is waited for. A
+// part that the descriptor does not have (-EOPNOTSUPP), or that fails although the descriptor is
+// ready, is left to `whole(fd)`. Returns what the call returns to its caller, or -errno.
 template <class Part, class Whole>
 long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, Rest& rest,
                  Part part, Whole whole) {
   const int saved = errno;
+  CallFile file(thread, fd);
   std::int64_t deadline_ns = -1;
+  bool is_last = false;  // the time is over
   for (long done = 0;;) {
     std::size_t count = 0;
     const iovec* iov = rest.Next(&count);
-    const long n = part(iov, count);
+    const long n = part(file.fd(), iov, count);
     if (n > 0) {
       done += n;
       rest.Use(static_cast<std::size_t>(n));
@@ -74,17 +77,19 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
     }
     const bool can_part = n != -EOPNOTSUPP || done > 0;
     if (n != -EAGAIN && can_part) return done > 0 ? done : n;
-    if (can_part && done == 0 && PollNow(fd, events)) return whole();
+    if ((!can_part || done == 0) && PollNow(file.fd(), events)) return whole(file.fd());
+    if (is_last) return done > 0 ? done : -EAGAIN;
     if (deadline_ns < 0) {
       deadline_ns =
           timeout_option != 0 ? SocketDeadline(thread, fd, timeout_option) : shm::kNeverNs;
     }
-    if (AwaitFd(thread, fd, events, deadline_ns) == FdState::kFailed) {
+    const FdState state = AwaitEvent(file, events, deadline_ns, false);
+    is_last = state == FdState::kTimedOut;
+    if (state == FdState::kFailed) {
       const int error = errno;
       errno = saved;
       return done > 0 ? done : -error;
     }
-    if (!can_part) return whole();
   }
 }
 

@@ -35,7 +35,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 23;
+inline constexpr std::uint32_t kVersion = 24;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -54,8 +54,9 @@ enum class NotificationKind : std::uint32_t {
   kWaitFds = 5,    // sleep until one of fds is ready, a signal of the set args[1] is pending, or
                    // deadline_ns; args[0]: 1 if one event of the one descriptor is for one waiter,
                    // the first of several that came, 2 if for the last;
-                   // args[2]: 1 to keep the place of the last such wait; reply[1]: 1 if others were
-                   // passed over, and want to know (kPassOn)
+                   // args[2]: 1 to keep the place of the last such wait; args[3]: a KeepFiles;
+                   // reply[0]: 1 if files are kept from now on; reply[1]: 1 if others were passed
+                   // over, and want to know (kPassOn)
   kPassOn = 32,    // the thread has taken what it was woken for
   kWaitChild = 6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or also, if
                    // args[1] is not 0, until one stops or goes on; or deadline_ns
@@ -65,15 +66,15 @@ enum class NotificationKind : std::uint32_t {
                   // as kTimerGet
   kTimerGet = 9,  // args[0]: timer id; reply[0]: next expiry or 0, reply[1]: interval
   kTimerDelete = 10,  // args[0]: timer id
-  kSpawned = 11,      // args[0]: pid of a new child that will attach; 0: a thread of the process,
-                      // with args[1..2] as kPriority's if args[1] >= 0, args[3] as kAffinity's
+  kSpawned = 11,      // args[0]: pid of a new child that will attach (ThreadSlot::announces)
   kYield = 12,        // let equals run
   kPriority = 13,     // args[0]: tid, 0 for the own; args[1]: POSIX policy, args[2]: priority, for
                       // the virtual scheduler; reply[0]: 0, or negative for an errno.
   // Policies may have SCHED_RESET_ON_FORK in them, or be kKeepPolicy. args[3]: 1
   // only to ask whether the caller may
   kInterrupted = 14,  // a signal handler wants to run while the thread waits: end the wait
-  kStrangers = 15,    // the process is about to get threads that never register
+  kMadeThread = 15,   // args[0]: pthread_t of a new thread that will attach; args[1..2] as
+                      // kPriority's if args[1] >= 0, args[3] as kAffinity's (0: any)
   kResumed = 17,      // a call unknown to the shim has returned (never sent by the shim itself)
   kPriorityGet = 18,  // args[0]: tid, 0 for the own; reply[0]: policy, or negative for an errno;
                       // reply[1]: priority
@@ -83,7 +84,9 @@ enum class NotificationKind : std::uint32_t {
   kSignalled = 20,      // the thread has sent a signal to process args[0]; 0: to any
   kQueueNotifies = 21,  // a message queue will have the kernel send a signal: see queues_notify
   kWaitKey = 22,  // sleep until a kernel object is changed, or deadline_ns; args[0]: a WaitKey,
-                  // args[1]: its number, args[2]: 1 to keep the place of the last such wait
+                  // args[1]: its number, args[2]: 1 to keep the place of the last such wait;
+                  // args[3]: 0, or 1 more than a descriptor whose file is kept as with
+                  // KeepFiles::kForCall; -1: what is kept already
   kWakeKey = 23,  // the object of args[0] and args[1] has been changed
   kTimerOverrun = 24,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
                        // reply[0]: overruns of the signal accepted last
@@ -127,6 +130,23 @@ inline constexpr std::uint64_t kBeginsInCall = 2;
 inline constexpr std::uint64_t kIsAhead = 4;
 
 inline constexpr std::int64_t kKeepPolicy = -1;
+
+// Linux keeps the file of a call for as long as that lasts, whatever its number comes to mean
+// meanwhile. So does the coordinator with the files that a thread waits for, and beyond the wait
+// where their numbers then mean others, or none: until the thread's next wait that does not want
+// them, or kLeaveFiles.
+enum class KeepFiles : std::int64_t {
+  kNot = 0,
+  kForCall = 1,  // of the one descriptor in `fds`; with no events: it is not waited for
+  kForPoll = 2,  // of all of them: they are looked for by their numbers, and waited for as files
+  kAgain = 3,    // those that were kept are waited for
+  kForSet = 4,   // as kForCall, of an epoll set
+};
+
+// Operations of futex(2), for the shim to say something without a notification: they are always
+// handed over, and answered at once. The kernel knows neither.
+inline constexpr std::uint32_t kTakeFile = 0x7c570001;    // a descriptor of the file that was kept
+inline constexpr std::uint32_t kLeaveFiles = 0x7c570002;  // those that were kept are given up
 
 enum class WhySockets : std::uint32_t {
   kOtherLibrary = 1,     // its libddsc is none that libtcs_dds.so is written for
@@ -211,7 +231,8 @@ struct ClockPage {
   std::int64_t children_cpu_ns;      // charged to the process's ended children
   // Written by the thread: the furthest that a read went beyond what was safe.
   std::atomic<std::int64_t> staleness_ns;
-  // Written by the coordinator at each dispatch: of each allocation; 0 under measured accounting.
+  // Written by the coordinator at each dispatch: of each allocation (set_costs.h); 0 under measured
+  // accounting.
   std::int64_t allocation_cost_ns;
   std::uint64_t counts_work;  // not 0: the thread keeps its WorkCounts; kBeginsInCall
   // Nothing is produced before this any more in sockets that are local to the robot.
@@ -319,10 +340,18 @@ struct alignas(64) ThreadSlot {
   std::atomic<std::uint32_t> waits_in_call;
   std::uint64_t stopped_tsc;
   DatagramNotes datagrams;
+  // Written by the thread: not 0 while it makes a thread or a process of which it will say so
+  // (kMadeThread, kSpawned). What the kernel makes for it at other times never attaches, or later.
+  std::atomic<std::uint32_t> announces;
+  // Written by the thread: how many descriptors it has closed or replaced, as far as the shim sees
+  // it.
+  std::atomic<std::uint32_t> descriptors_changed;
   alignas(64) Postbox postbox;
 };
 static_assert(sizeof(ThreadSlot) == 5376);
 static_assert(offsetof(ThreadSlot, datagrams) == 1216);
+static_assert(offsetof(ThreadSlot, announces) == 3272);
+static_assert(offsetof(ThreadSlot, descriptors_changed) == 3276);
 static_assert(offsetof(ThreadSlot, postbox) == 3328);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);

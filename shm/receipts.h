@@ -43,16 +43,23 @@ struct Receipts {
   std::uint32_t has_received;    // 1: in this activation
   std::uint32_t has_sent;        // 1: since then
   std::atomic<std::uint32_t> count;
-  std::uint32_t padding;
+  std::uint32_t allocations;  // since its last wait was over, where they are counted
   Entry entries[kMost];
 };
+static_assert(offsetof(Receipts, allocations) == 20);
 static_assert(sizeof(Receipts) == 24 + 48 * Receipts::kMost);
 static_assert(offsetof(Receipts, entries) == 24);
 
 // Its wait is over.
-inline void NoteWoken(Receipts& receipts) { receipts.has_received = receipts.has_sent = 0; }
+inline void NoteWoken(Receipts& receipts) {
+  receipts.has_received = receipts.has_sent = 0;
+  receipts.allocations = 0;
+}
 
-inline void NoteStarted(Receipts& receipts) { receipts.has_received = receipts.has_sent = 1; }
+inline void NoteStarted(Receipts& receipts) {
+  receipts.has_received = receipts.has_sent = 1;
+  receipts.allocations = 0;
+}
 
 inline void NoteSent(Receipts& receipts) { receipts.has_sent = 1; }
 

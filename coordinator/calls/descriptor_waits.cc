@@ -1,5 +1,6 @@
 #include "coordinator/calls/descriptor_waits.h"
 
+#include <poll.h>
 #include <sys/epoll.h>
 
 #include <utility>
@@ -9,20 +10,73 @@
 
 namespace tcs {
 
+namespace {
+
+bool IsReady(int fd, std::uint32_t events) {
+  pollfd probe{fd, static_cast<short>(events), 0};
+  return poll(&probe, 1, 0) > 0;
+}
+
+}  // namespace
+
+bool DescriptorWaits::Arm(int fd, std::uint32_t events, const Subject& subject,
+                          awaited::Descriptors& watched) {
+  if (reactor_.Modify(fd, events, subject)) return true;
+  if (!reactor_.Add(fd, events, subject)) return false;
+  // Terminals are never left in the set, so they always come this way.
+  watched.has_terminal |= IsTerminal(fd);
+  return true;
+}
+
+void DescriptorWaits::Add(Copy copy, const Subject& subject, awaited::Descriptors& watched) {
+  if (!copy.fd) return;
+  const bool is_waited_for = copy.asked.events != 0;  // or is kept for the call only
+  const std::uint32_t events = copy.asked.events | EPOLLONESHOT;
+  if (is_waited_for && !Arm(copy.fd.get(), events, subject, watched)) return;
+  watched.fds.push_back(std::move(copy.fd));
+  watched.asked.push_back(copy.asked);
+}
+
 awaited::Descriptors DescriptorWaits::Watch(const Task& task, const shm::WaitFd* fds,
                                             std::size_t count) {
-  awaited::Descriptors watched{.number = ++wait_counter_, .order = task.fds_order};
+  awaited::Descriptors watched{
+      .since = task.process->changes, .number = ++wait_counter_, .order = task.fds_order};
   const Subject subject = SubjectOf(task, watched);
   for (std::size_t i = 0; i < count; ++i) {
-    UniqueFd fd = CopyOfDescriptor(*task.process, fds[i].fd);
-    if (!fd) continue;
-    const std::uint32_t events = fds[i].events | EPOLLONESHOT;
-    if (!reactor_.Modify(fd.get(), events, subject)) {
-      if (!reactor_.Add(fd.get(), events, subject)) continue;
-      // Terminals are never left in the set, so they always come this way.
-      watched.has_terminal |= IsTerminal(fd.get());
-    }
-    watched.fds.push_back(std::move(fd));
+    Add({fds[i], CopyOfDescriptor(*task.process, fds[i].fd)}, subject, watched);
+  }
+  return watched;
+}
+
+awaited::Descriptors DescriptorWaits::Watch(const Task& task, std::vector<Copy> copies) {
+  awaited::Descriptors watched{
+      .since = task.process->changes, .number = ++wait_counter_, .order = task.fds_order};
+  const Subject subject = SubjectOf(task, watched);
+  for (Copy& copy : copies) Add(std::move(copy), subject, watched);
+  return watched;
+}
+
+// Who polls has looked for the files by their numbers, and found nothing. What is there already in
+// one that is no longer under its number is no news to it, as the kernel has it.
+awaited::Descriptors DescriptorWaits::WatchKept(Task& task) {
+  KeptFiles kept = std::move(*std::exchange(task.kept, std::nullopt));
+  awaited::Descriptors watched{.fds = std::move(kept.files),
+                               .asked = std::move(kept.asked),
+                               .keep = kept.keep,
+                               .since = kept.since,
+                               .number = ++wait_counter_,
+                               .signals = kept.signals,
+                               .done = kept.done,
+                               .order = task.fds_order};
+  const Subject subject = SubjectOf(task, watched);
+  for (std::size_t i = 0; i < watched.fds.size(); ++i) {
+    const std::uint32_t events = watched.asked[i].events;
+    if (events == 0) continue;
+    const int fd = watched.fds[i].get();
+    const bool awaits_news = kept.keep == shm::KeepFiles::kForPoll && kept.are_replaced[i];
+    Arm(fd, events | (awaits_news ? EPOLLET : EPOLLONESHOT), subject, watched);
+    watched.is_edge_armed |= awaits_news;
+    if (awaits_news && IsReady(fd, events)) watched.skips_in = reactor_.next_look();
   }
   return watched;
 }
@@ -32,12 +86,18 @@ void DescriptorWaits::GoBehind(Task& task, awaited::Descriptors& watched) {
 }
 
 awaited::Descriptors DescriptorWaits::WatchAsAsked(Task& task, const shm::Notification& note) {
-  awaited::Descriptors watched = Watch(task, note.fds, note.fd_count);
-  watched.signals = static_cast<std::uint64_t>(note.args[1]);
-  watched.takes =
-      note.args[0] != 0 && watched.fds.size() == 1 && note.fd_count == 1 && watched.signals == 0;
+  const auto keep = static_cast<shm::KeepFiles>(note.args[3]);
+  awaited::Descriptors watched;
+  if (keep == shm::KeepFiles::kAgain && task.kept.has_value()) {
+    watched = WatchKept(task);
+  } else {
+    watched = Watch(task, note.fds, note.fd_count);
+    watched.signals = static_cast<std::uint64_t>(note.args[1]);
+    watched.keep = keep;
+  }
+  watched.takes = note.args[0] != 0 && watched.fds.size() == 1 && watched.signals == 0;
   watched.last_is_first = note.args[0] == 2;
-  if (watched.takes) watched.events = note.fds[0].events;
+  if (watched.takes) watched.events = watched.asked[0].events;
   if (note.args[2] == 0) GoBehind(task, watched);
   return watched;
 }

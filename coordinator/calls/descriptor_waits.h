@@ -6,7 +6,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
+#include "coordinator/os/unique_fd.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/task.h"
 #include "coordinator/tasks/wait.h"
@@ -21,6 +23,14 @@ class DescriptorWaits {
   // From now on the descriptors of the thread's process with these numbers are watched. One that
   // cannot be watched is left out: a file is always ready, and a closed descriptor reports nothing.
   awaited::Descriptors Watch(const Task& task, const shm::WaitFd* fds, std::size_t count);
+  // The same with copies that have been made.
+  struct Copy {
+    shm::WaitFd asked;
+    UniqueFd fd;
+  };
+  awaited::Descriptors Watch(const Task& task, std::vector<Copy> copies);
+  // Once more the files that were kept for the thread, which there must be.
+  awaited::Descriptors WatchKept(Task& task);
   // What the notification asks for: whether one event is for one waiter, and whether signals end
   // it.
   awaited::Descriptors WatchAsAsked(Task& task, const shm::Notification& note);
@@ -33,6 +43,10 @@ class DescriptorWaits {
   static Subject SubjectOf(const Task& task, const awaited::Descriptors& watched);
 
  private:
+  void Add(Copy copy, const Subject& subject, awaited::Descriptors& watched);
+  // False if it cannot be watched.
+  bool Arm(int fd, std::uint32_t events, const Subject& subject, awaited::Descriptors& watched);
+
   Reactor& reactor_;
   std::uint32_t wait_counter_ = 0;
   std::uint64_t fds_order_counter_ = 0;

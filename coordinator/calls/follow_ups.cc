@@ -37,6 +37,9 @@ void FollowUps::Do(Task& task, Moment call, bool last) {
     case FollowUp::kTerminals:
       objects_.FlushTerminals(call);
       break;
+    case FollowUp::kBirths:
+      spawns_.LookForBirths(task, call);
+      break;
     case FollowUp::kContinued:
       if (Process* parent = run_.table.LivingProcess(task.process->parent); parent != nullptr) {
         signal_wakes_.WakeForSignals(*parent, call);

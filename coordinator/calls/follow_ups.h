@@ -9,6 +9,7 @@
 #include "coordinator/calls/shared_events.h"
 #include "coordinator/calls/signal_calls.h"
 #include "coordinator/calls/signal_wakes.h"
+#include "coordinator/calls/spawns.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {
@@ -16,12 +17,13 @@ namespace tcs {
 class FollowUps {
  public:
   FollowUps(RunState& run, KernelObjectWaits& objects, SharedEvents& shared_events,
-            SignalCalls& signals, SignalWakes& signal_wakes)
+            SignalCalls& signals, SignalWakes& signal_wakes, Spawns& spawns)
       : run_(run),
         objects_(objects),
         shared_events_(shared_events),
         signals_(signals),
-        signal_wakes_(signal_wakes) {}
+        signal_wakes_(signal_wakes),
+        spawns_(spawns) {}
 
   // The thread has run since the kernel got the call, which it made at `call`. `last`: it is known
   // to have come back from it.
@@ -33,6 +35,7 @@ class FollowUps {
   SharedEvents& shared_events_;
   SignalCalls& signals_;
   SignalWakes& signal_wakes_;
+  Spawns& spawns_;
 };
 
 }  // namespace tcs

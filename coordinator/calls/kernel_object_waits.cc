@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "coordinator/calls/call_files.h"
 #include "coordinator/calls/raw_semaphores.h"
 #include "coordinator/os/host.h"
 
@@ -24,6 +25,11 @@ bool StillWaits(const Task& task) { return WouldWaitForSemaphores(task, task.tra
 void KernelObjectWaits::Wait(Task& task, const shm::Notification& note, VirtualTime deadline) {
   const KernelObject object{.kind = note.args[0], .id = note.args[1]};
   objects_.Wait(task.order, object, note.args[2] != 0);
+  if (note.args[3] > 0) {
+    CallFiles::Keep(task, static_cast<int>(note.args[3] - 1));
+  } else if (note.args[3] < 0) {
+    CallFiles::KeepOn(task);
+  }
   waker_.Wait(task, {awaited::Queue{object}, deadline});
 }
 

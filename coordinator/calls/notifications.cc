@@ -54,6 +54,9 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
     parts_.expulsion.Expel(*task.process, what);
     return false;
   }
+  const bool announces = note.kind == Kind::kSpawned || note.kind == Kind::kMadeThread;
+  if (!announces) parts_.spawns.MakerSpeaks(task, moment);
+  task.in_vfork = false;
   task.reason = shm::WakeReason::kGo;
   task.expects_kernel = note.kind == Kind::kKernelWait;
   const VirtualTime deadline = WaitDeadlineOf(task, note);
@@ -87,7 +90,8 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       looks_again = parts_.timers.Handle(*task.process, task, note);
       break;
     case Kind::kSpawned:
-      parts_.spawns.Handle(task, note);
+    case Kind::kMadeThread:
+      parts_.spawns.Announced(task, note);
       break;
     case Kind::kYield:
       looks_again = Yield(task);
@@ -96,9 +100,6 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
     case Kind::kPriorityGet:
     case Kind::kAffinity:
       parts_.scheduling.Handle(task, note);
-      break;
-    case Kind::kStrangers:
-      task.process->has_unmanaged_threads = run_.had_unmanaged_threads = true;
       break;
     case Kind::kSignalled:
       parts_.signals.Sent(static_cast<pid_t>(note.args[0]), moment);

@@ -115,6 +115,13 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
     case SYS_exit:
       exit_(task, call);
       break;
+    case SYS_clone:
+    case SYS_clone3:
+    case SYS_fork:
+    case SYS_vfork:
+      task.trap_continues = true;
+      Spawns::Begin(task, call);
+      break;
     case SYS_sched_setscheduler:
     case SYS_sched_setparam:
     case SYS_sched_setattr:

@@ -18,6 +18,7 @@
 #include "coordinator/calls/raw_times.h"
 #include "coordinator/calls/raw_transfers.h"
 #include "coordinator/calls/raw_usage.h"
+#include "coordinator/calls/spawns.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/tasks/waker.h"
 

@@ -77,6 +77,11 @@ std::optional<std::vector<shm::WaitFd>> SelectedFds(const Task& task, const Trap
   return waited;
 }
 
+bool IsOfSet(const TrappedCall& call) {
+  return call.number == SYS_epoll_wait || call.number == SYS_epoll_pwait ||
+         call.number == SYS_epoll_pwait2;
+}
+
 bool IsSoundEpollWait(const Task& task, const TrappedCall& call) {
   constexpr int kMostEvents = INT_MAX / static_cast<int>(sizeof(epoll_event));
   const int most = static_cast<int>(call.args[2]);
@@ -94,10 +99,13 @@ std::int64_t RawPolls::Poll(Task& task, const TrappedCall& call) {
   if (!TimeoutOf(task, call, &timeout_ns)) return 0;
   const auto waited = FdsOf(task, call);
   if (!waited.has_value()) return 0;
+  std::vector<DescriptorWaits::Copy> copies;
   const bool ready = std::any_of(waited->begin(), waited->end(), [&](const shm::WaitFd& fd) {
-    const Borrowed looked_at(task, fd.fd);
+    Borrowed looked_at(task, fd.fd);
     const bool is_closed = looked_at.fd() < 0 && errno == EBADF;  // which the kernel says at once
-    return is_closed || looked_at.IsReady(static_cast<short>(fd.events));
+    if (is_closed || looked_at.IsReady(static_cast<short>(fd.events))) return true;
+    copies.push_back({fd, looked_at.Take()});
+    return false;
   });
   if (timeout_ns == 0 || ready) {
     waker_.HoldInCall(task, shm::NotificationKind::kRead);
@@ -105,7 +113,8 @@ std::int64_t RawPolls::Poll(Task& task, const TrappedCall& call) {
   }
   const VirtualTime deadline =
       timeout_ns < 0 ? VirtualTime::Never() : AtMostNever(task.reached, VirtualNs(timeout_ns));
-  awaited::Descriptors watched = descriptors_.Watch(task, waited->data(), waited->size());
+  awaited::Descriptors watched = descriptors_.Watch(task, std::move(copies));
+  watched.keep = IsOfSet(call) ? shm::KeepFiles::kForCall : shm::KeepFiles::kForPoll;
   watched.signals = SignalsOf(task, call);
   waker_.Wait(task, {std::move(watched), deadline, true});
   return 0;
@@ -186,6 +195,77 @@ std::uint64_t RawPolls::SignalsOf(const Task& task, const TrappedCall& call) {
   if (address == 0 || !Read(task, address, &mask)) return 0;
   const SignalSets sets = ReadSignalSets(task.tid);
   return ~mask & ~kNeverHeld & ~sets.ignored & ~(kNoEnd & ~sets.caught);
+}
+
+namespace {
+
+// What is under a number now: events that are there, of those asked for and of those that nobody
+// has to ask for.
+std::uint32_t EventsAt(const Task& task, int number, std::uint32_t asked) {
+  const Borrowed looked_at(task, number);
+  if (looked_at.fd() < 0) return errno == EBADF ? POLLNVAL : 0;
+  pollfd probe{looked_at.fd(), static_cast<short>(asked), 0};
+  poll(&probe, 1, 0);
+  return static_cast<unsigned short>(probe.revents);
+}
+
+std::int64_t PollByNumber(const Task& task, const TrappedCall& call) {
+  std::vector<pollfd> fds(std::min<std::size_t>(call.args[1], kMostPolled));
+  const std::size_t size = fds.size() * sizeof(pollfd);
+  if (!ReadMemory(task.process->pid, call.args[0], fds.data(), size)) return -EFAULT;
+  std::int64_t found = 0;
+  for (pollfd& fd : fds) {
+    const auto events = static_cast<unsigned short>(fd.events);
+    fd.revents = fd.fd < 0 ? short{0} : static_cast<short>(EventsAt(task, fd.fd, events));
+    found += fd.revents != 0;
+  }
+  return WriteMemory(task.process->pid, call.args[0], fds.data(), size) ? found : -EFAULT;
+}
+
+// Each set's descriptors are those with one of these. What has been closed meanwhile is in all.
+constexpr std::uint32_t kInSet[kSets] = {POLLIN | POLLRDNORM | POLLRDBAND | POLLHUP | POLLERR,
+                                         POLLOUT | POLLWRNORM | POLLWRBAND | POLLERR, POLLPRI};
+
+std::int64_t SelectByNumber(const Task& task, const TrappedCall& call) {
+  const auto waited = SelectedFds(task, call);
+  if (!waited.has_value()) return -EFAULT;
+  constexpr std::uint32_t kAsks[kSets] = {EPOLLIN, EPOLLOUT, EPOLLPRI};
+  std::vector<std::uint64_t> sets[kSets];
+  for (std::vector<std::uint64_t>& set : sets) set.resize(WordsOf(SelectedCount(task, call)));
+  std::int64_t found = 0;
+  for (const shm::WaitFd& fd : *waited) {
+    const std::uint32_t events = EventsAt(task, fd.fd, fd.events);
+    for (std::size_t i = 0; i < kSets; ++i) {
+      if ((fd.events & kAsks[i]) == 0 || (events & (kInSet[i] | POLLNVAL)) == 0) continue;
+      const auto number = static_cast<std::size_t>(fd.fd);
+      sets[i][number / 64] |= std::uint64_t{1} << (number % 64);
+      ++found;
+    }
+  }
+  if (found == 0) return 0;
+  for (std::size_t i = 0; i < kSets; ++i) {
+    if (call.args[i + 1] != 0 && !WriteMemory(task.process->pid, call.args[i + 1], sets[i].data(),
+                                              sets[i].size() * sizeof sets[i][0])) {
+      return -EFAULT;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+std::int64_t RawPolls::Again(const Task& task, const TrappedCall& call, int file) {
+  if (!IsOfSet(call)) {
+    const bool selects = call.number == SYS_select || call.number == SYS_pselect6;
+    return selects ? SelectByNumber(task, call) : PollByNumber(task, call);
+  }
+  constexpr int kMostTaken = 1024;
+  epoll_event events[kMostTaken];
+  const int count =
+      epoll_wait(file, events, std::min(kMostTaken, static_cast<int>(call.args[2])), 0);
+  if (count <= 0) return count < 0 ? -errno : 0;
+  const std::size_t size = static_cast<std::size_t>(count) * sizeof events[0];
+  return WriteMemory(task.process->pid, call.args[1], events, size) ? count : -EFAULT;
 }
 
 void RawPolls::ClearResult(const Task& task, const TrappedCall& call) {

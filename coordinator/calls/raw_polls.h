@@ -21,6 +21,10 @@ class RawPolls {
 
   // What the call returns where the kernel does not carry it out.
   std::int64_t Poll(Task& task, const TrappedCall& call);
+  // What such a call finds that has waited, and whose numbers mean others than `file` and its like
+  // by now. As the kernel has it, it looks for them by their numbers each time; but for an epoll
+  // set, which is its file.
+  static std::int64_t Again(const Task& task, const TrappedCall& call, int file);
   // A wait for descriptors has timed out: none is ready.
   static void ClearResult(const Task& task, const TrappedCall& call);
 

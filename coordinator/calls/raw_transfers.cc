@@ -8,6 +8,7 @@
 #include <sys/uio.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "coordinator/tasks/borrowed.h"
@@ -129,7 +130,7 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
   const Transfer transfer = TransferOf(call);
   const short events = transfer.reads ? POLLIN : POLLOUT;
   const auto number = static_cast<int>(call.args[0]);
-  const Borrowed fd(task, number);
+  Borrowed fd(task, number);
   if (draws_.Read(task, call, fd)) return;
   task.trap_continues = true;
   if (!fd.CanWait()) return;
@@ -153,7 +154,10 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
   }
   const std::int64_t timeout = fd.SocketTimeout(transfer.reads ? SO_RCVTIMEO : SO_SNDTIMEO);
   const shm::WaitFd waited{number, static_cast<std::uint32_t>(events)};
-  awaited::Descriptors watched = descriptors_.Watch(task, &waited, 1);
+  std::vector<DescriptorWaits::Copy> copies;
+  copies.push_back({waited, fd.Take()});
+  awaited::Descriptors watched = descriptors_.Watch(task, std::move(copies));
+  watched.keep = shm::KeepFiles::kForCall;
   watched.transfers = true;
   watched.takes = watched.fds.size() == 1;
   watched.events = waited.events;

@@ -2,41 +2,221 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "coordinator/os/host.h"
 
 namespace tcs {
 
-void Spawns::Handle(Task& maker, const shm::Notification& note) {
-  if (note.args[0] == 0) {
-    OfThread(maker, note);
-  } else {
-    OfProcess(maker, static_cast<pid_t>(note.args[0]));
-  }
+namespace {
+
+// Of what a program says that it will tell of, and never does.
+constexpr std::size_t kMostBirths = 64;
+
+// A child that acts in its parent's place. One of a program without the shim does not: nothing of
+// the parent's is in it but the memory.
+bool ActsForParent(const Task& maker, const CloneCall& call) {
+  return call.SharesMemory() && call.WaitsForChild() && !maker.process->is_bare;
 }
 
-void Spawns::OfThread(Task& creator, const shm::Notification& note) {
-  for (const pid_t tid : ThreadsOf(creator.process->pid)) {
-    if (run_.table.Living(tid) != nullptr || unmanaged_.IsLowered(tid)) continue;
-    executor_.Hold(tid);
-    Task& thread = births_.AddThread(*creator.process, tid, creator.reached);
-    scheduling_.Inherit(thread, creator);
-    if (note.args[1] >= 0) scheduling_.SetPriority(creator, thread, note.args[1], note.args[2]);
-    if (note.args[3] != 0)
-      scheduling_.SetAffinity(creator, thread, static_cast<std::uint64_t>(note.args[3]));
+}  // namespace
+
+bool Spawns::IsAnnounced(const Task& maker) {
+  return maker.slot >= 0 && SlotOf(maker).announces.load() != 0;
+}
+
+// Of what the kernel will refuse nothing is found.
+void Spawns::Begin(Task& maker, const TrappedCall& call) {
+  const auto made = ReadCloneCall(call);
+  if (!made.has_value()) return;
+  if (maker.births.size() >= kMostBirths) maker.births.clear();
+  const bool is_announced = IsAnnounced(maker);
+  maker.births.push_back({*made, is_announced});
+  if (is_announced || ActsForParent(maker, *made)) return;
+  maker.follow_up = FollowUp::kBirths;
+  maker.in_vfork = maker.expects_kernel = made->WaitsForChild();
+}
+
+bool Spawns::IsUnborn(pid_t tid, Moment moment) {
+  const pid_t pid = ProcessOfThread(tid);
+  const Process* process = run_.table.LivingProcess(pid);
+  const bool is_thread = process != nullptr;
+  if (!is_thread) process = run_.table.LivingProcess(ParentOf(pid));
+  if (process == nullptr) return false;
+  bool is_expected = false;
+  for (Task* maker : run_.table.ThreadsOf(*process)) {
+    LookForBirths(*maker, moment);
+    is_expected |= std::any_of(maker->births.begin(), maker->births.end(),
+                               [](const Birth& birth) { return birth.call.MakesThread(); });
+  }
+  return is_thread && is_expected && run_.table.Living(tid) == nullptr;
+}
+
+Task* Spawns::ActsFor(pid_t tid) {
+  const pid_t pid = ProcessOfThread(tid);
+  if (run_.table.LivingProcess(pid) != nullptr) return nullptr;
+  const Process* parent = run_.table.LivingProcess(ParentOf(pid));
+  if (parent == nullptr) return nullptr;
+  const auto acts = [&parent](const Task* maker) {
+    return ThreadState(maker->tid) == 'D' &&
+           std::any_of(maker->births.begin(), maker->births.end(),
+                       [&](const Birth& birth) { return ActsForParent(*maker, birth.call); });
+  };
+  for (Task* maker : run_.table.ThreadsOf(*parent)) {
+    if (acts(maker)) return maker;
+  }
+  return nullptr;
+}
+
+// `is_done`: of what is not found there will be nothing.
+void Spawns::TakeIn(Task& maker, Moment moment, bool announced_too, bool is_done) {
+  if (maker.births.empty()) return;
+  std::vector<Birth> left;
+  for (const Birth& birth : std::exchange(maker.births, {})) {
+    const CloneCall& call = birth.call;
+    // While that acts for its parent, whatever it says is said as by the parent.
+    const bool acts = ActsForParent(maker, call) && (!is_done || ThreadState(maker.tid) == 'D');
+    const auto take_in = [&] {
+      return call.MakesThread() ? TakeInThread(maker, call, moment)
+                                : TakeInChild(maker, call, moment);
+    };
+    const bool is_left = acts || (birth.is_announced && !announced_too);
+    if (is_left || (!take_in() && !is_done)) left.push_back(birth);
+  }
+  maker.births.insert(maker.births.begin(), left.begin(), left.end());
+}
+
+bool Spawns::IsNew(const Task& maker, pid_t tid) const {
+  return run_.table.Living(tid) == nullptr && !parts_.unmanaged.IsLowered(tid) &&
+         IsThreadOf(maker.process->pid, tid);
+}
+
+// 0: it is not there, or not yet. The number that the kernel has left is another one where the
+// program has a PID namespace of its own.
+pid_t Spawns::ThreadOf(const Task& maker, const CloneCall& call) const {
+  const auto told = [&](const CloneCall& by) {
+    pid_t tid = 0;
+    const bool is_told = by.tid_address != 0 &&
+                         ReadMemory(maker.process->pid, by.tid_address, &tid, sizeof tid) &&
+                         IsNew(maker, tid);
+    return is_told ? tid : 0;
+  };
+  if (const pid_t tid = told(call); tid != 0) return tid;
+  for (const pid_t tid : ThreadsOf(maker.process->pid)) {
+    const bool is_anothers =
+        std::any_of(maker.births.begin(), maker.births.end(),
+                    [&](const Birth& birth) { return told(birth.call) == tid; });
+    if (!is_anothers && IsNew(maker, tid)) return tid;
+  }
+  return 0;
+}
+
+Task& Spawns::AddThread(Task& maker, pid_t tid, VirtualTime at) {
+  parts_.executor.Hold(tid);
+  Task& thread = parts_.births.AddThread(*maker.process, tid, at);
+  parts_.scheduling.Inherit(thread, maker);
+  return thread;
+}
+
+Task& Spawns::AddChild(Task& maker, pid_t pid, VirtualTime at) {
+  parts_.executor.Hold(pid);
+  Task& child = parts_.births.AddChild(pid, ParentOf(pid), *maker.process, at);
+  parts_.scheduling.Inherit(child, maker);
+  return child;
+}
+
+bool Spawns::TakeInThread(Task& maker, const CloneCall& call, Moment moment) {
+  const pid_t tid = ThreadOf(maker, call);
+  if (tid == 0) return false;
+  Task& thread = AddThread(maker, tid, moment.at);
+  parts_.registration.GivePlace(thread, moment, call.end_word, true);
+  thread.can_be_stopped &= call.HasOwnStorage();
+  thread.tls = call.tls;
+  return true;
+}
+
+bool Spawns::TakeInChild(Task& maker, const CloneCall& call, Moment moment) {
+  if (call.SharesMemory() && !call.WaitsForChild()) {
+    parts_.unknown_children.LookFor(*maker.process);
+    return true;
+  }
+  const Process& of = *maker.process;
+  const pid_t parent = (call.flags & CLONE_PARENT) != 0 ? of.parent : of.pid;
+  if (parent == getpid()) return false;  // it cannot be told from others
+  for (const pid_t pid : ChildrenOf(parent)) {
+    const char state = ThreadState(pid);
+    if (state == 'X' || state == 'Z' || run_.table.LivingProcess(pid) != nullptr ||
+        run_.table.IsPorter(pid) || parts_.unknown_children.living().contains(pid)) {
+      continue;
+    }
+    Task& child = AddChild(maker, pid, moment.at);
+    // One that has executed another program attaches, unless that has no shim.
+    const bool has_executed = call.SharesMemory();
+    child.process->is_bare =
+        has_executed ? parts_.bare_programs.TakeUnknown(pid) : maker.process->is_bare;
+    if (!has_executed || child.process->is_bare) {
+      parts_.registration.GivePlace(child, moment, 0, !has_executed);
+    }
+    return true;
+  }
+  return false;
+}
+
+void Spawns::Announced(Task& maker, const shm::Notification& note) {
+  if (note.kind == shm::NotificationKind::kMadeThread) {
+    AnnouncedThread(maker, note);
+  } else {
+    AnnouncedProcess(maker, static_cast<pid_t>(note.args[0]));
+  }
+  // What else was made on the way nobody tells of.
+  MakerSpeaks(maker, {maker.reached});
+}
+
+void Spawns::AnnouncedThread(Task& maker, const shm::Notification& note) {
+  const auto tls = static_cast<std::uint64_t>(note.args[0]);
+  Task* thread = nullptr;
+  const auto is_it = [tls](const Birth& birth) {
+    return birth.call.MakesThread() && birth.call.tls == tls;
+  };
+  const auto found = std::find_if(maker.births.begin(), maker.births.end(), is_it);
+  if (found != maker.births.end()) {
+    const CloneCall call = found->call;
+    std::erase_if(maker.births, is_it);
+    const pid_t tid = ThreadOf(maker, call);
+    if (tid != 0) thread = &AddThread(maker, tid, maker.reached);
+  } else {
+    for (Task* other : run_.table.ThreadsOf(*maker.process)) {
+      if (other->tls == tls) thread = other;
+    }
+  }
+  if (thread == nullptr) return;
+  if (note.args[1] >= 0) {
+    parts_.scheduling.SetPriority(maker, *thread, note.args[1], note.args[2]);
+  }
+  if (note.args[3] != 0) {
+    parts_.scheduling.SetAffinity(maker, *thread, static_cast<std::uint64_t>(note.args[3]));
   }
 }
 
 // Only a child of its own: with CLONE_PARENT its parent's. It has not been waited for, so that its
 // number is nobody else's.
-void Spawns::OfProcess(Task& parent, pid_t pid) {
-  Process& of = *parent.process;
+void Spawns::AnnouncedProcess(Task& maker, pid_t pid) {
+  const auto is_it = [](const Birth& birth) {
+    return birth.is_announced && !birth.call.MakesThread();
+  };
+  const auto found = std::find_if(maker.births.begin(), maker.births.end(), is_it);
+  if (found != maker.births.end()) maker.births.erase(found);
+  const Process& of = *maker.process;
   if (pid <= 0 || run_.table.LivingProcess(pid) != nullptr || run_.table.Living(pid) != nullptr)
     return;
   if (ThreadState(pid) == 'X' || ThreadState(pid) == 'Z') return;
   const pid_t actual = ParentOf(pid);
   if (actual != of.pid && (actual != of.parent || actual == getpid())) return;
-  executor_.Hold(pid);
-  scheduling_.Inherit(births_.AddChild(pid, of.pid, of, parent.reached), parent);
+  Task& child = AddChild(maker, pid, maker.reached);
+  child.process->is_bare = parts_.bare_programs.TakeUnknown(pid);
+  if (child.process->is_bare) parts_.registration.GivePlace(child, {maker.reached}, 0, false);
 }
 
 }  // namespace tcs

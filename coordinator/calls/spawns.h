@@ -1,5 +1,13 @@
-// Threads and processes whose makers have said that they made them: they are known from then on,
-// and held until their first dispatch.
+// New threads and processes: they are known from their births on, and held until their first
+// dispatch.
+//
+// Whoever makes one does so by a trapped call. What the shim has made it tells of next
+// (kMadeThread, kSpawned), and that attaches at its first turn. All others (of the C library's own,
+// of other libraries, of bare clones, and those whose maker says something else before) have their
+// places at once, as if they had attached, and may do so when they first make a call that the shim
+// sees. Two kinds have none: a child by vfork that has its parent's memory acts in its parent's
+// place until it executes another program; and one that has it without being a thread is not
+// managed (processes/unknown_children.h).
 //
 // For the coordinator's thread only.
 #pragma once
@@ -8,8 +16,12 @@
 
 #include "coordinator/calls/scheduling_calls.h"
 #include "coordinator/host/executor.h"
+#include "coordinator/processes/bare_programs.h"
 #include "coordinator/processes/births.h"
+#include "coordinator/processes/registration.h"
+#include "coordinator/processes/unknown_children.h"
 #include "coordinator/processes/unmanaged_threads.h"
+#include "coordinator/tasks/moment.h"
 #include "coordinator/tasks/run_state.h"
 #include "shm/layout.h"
 
@@ -17,26 +29,50 @@ namespace tcs {
 
 class Spawns {
  public:
-  Spawns(RunState& run, Executor& executor, Births& births, SchedulingCalls& scheduling,
-         const UnmanagedThreads& unmanaged)
-      : run_(run),
-        executor_(executor),
-        births_(births),
-        scheduling_(scheduling),
-        unmanaged_(unmanaged) {}
+  // The parts that it needs. They outlive it.
+  struct Parts {
+    Executor& executor;
+    Births& births;
+    Registration& registration;
+    SchedulingCalls& scheduling;
+    BarePrograms& bare_programs;
+    UnknownChildren& unknown_children;
+    const UnmanagedThreads& unmanaged;
+  };
 
-  // kSpawned.
-  void Handle(Task& maker, const shm::Notification& note);
+  Spawns(RunState& run, Parts parts) : run_(run), parts_(parts) {}
+
+  // The shim makes what the thread makes now, and will tell of it.
+  static bool IsAnnounced(const Task& maker);
+  // The thread makes one by that call, which the kernel carries out next.
+  static void Begin(Task& maker, const TrappedCall& call);
+  // The kernel may have made it by now. What the shim tells of may still be told.
+  void LookForBirths(Task& maker, Moment moment) { TakeIn(maker, moment, false, false); }
+  // The thread's turn is over; or it says something else than what it was to tell, and the kernel
+  // is through with its call.
+  void TurnEnds(Task& maker, Moment moment) { TakeIn(maker, moment, true, false); }
+  void MakerSpeaks(Task& maker, Moment moment) { TakeIn(maker, moment, true, true); }
+  // A thread that nobody knows has made a call: it may be one that another makes. True: it is not
+  // known yet, but will be once its maker has gone on.
+  bool IsUnborn(pid_t tid, Moment moment);
+  // The thread in whose place that one acts, which is no other's; null: it acts for itself.
+  Task* ActsFor(pid_t tid);
+  // kSpawned, kMadeThread.
+  void Announced(Task& maker, const shm::Notification& note);
 
  private:
-  void OfThread(Task& creator, const shm::Notification& note);
-  void OfProcess(Task& parent, pid_t pid);
+  void AnnouncedThread(Task& maker, const shm::Notification& note);
+  void AnnouncedProcess(Task& maker, pid_t pid);
+  void TakeIn(Task& maker, Moment moment, bool announced_too, bool is_done);
+  bool TakeInThread(Task& maker, const CloneCall& call, Moment moment);
+  bool TakeInChild(Task& maker, const CloneCall& call, Moment moment);
+  Task& AddThread(Task& maker, pid_t tid, VirtualTime at);
+  Task& AddChild(Task& maker, pid_t pid, VirtualTime at);
+  pid_t ThreadOf(const Task& maker, const CloneCall& call) const;
+  bool IsNew(const Task& maker, pid_t tid) const;
 
   RunState& run_;
-  Executor& executor_;
-  Births& births_;
-  SchedulingCalls& scheduling_;
-  const UnmanagedThreads& unmanaged_;
+  const Parts parts_;
 };
 
 }  // namespace tcs

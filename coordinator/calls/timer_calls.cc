@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
 #include "coordinator/os/timer_descriptor.h"
 #include "coordinator/processes/usage_book.h"
 #include "coordinator/tasks/borrowed.h"
@@ -24,6 +25,22 @@ bool TellDescriptors(const Process& process, const std::vector<ProcessTimers::Ra
     if (fd != process.timer_fds.end()) wrote |= AddExpirations(fd->second.get(), timer.count);
   }
   return wrote;
+}
+
+// A thread of the process's is in a call on the timer's descriptor.
+bool IsInCall(const Process& process, std::int64_t id) {
+  const auto timer = process.timer_fds.find(id);
+  if (process.threads == 1 || timer == process.timer_fds.end()) return false;
+  const auto has_timer = [&](const std::vector<UniqueFd>& files) {
+    return std::ranges::any_of(
+        files, [&](const UniqueFd& file) { return IsSameFile(file.get(), timer->second.get()); });
+  };
+  return std::ranges::any_of(process.robot->tasks, [&](const Task* task) {
+    if (task->process != &process) return false;
+    const auto* wait = task->Awaits<awaited::Descriptors>();
+    return (wait != nullptr && has_timer(wait->fds)) ||
+           (task->kept.has_value() && has_timer(task->kept->files));
+  });
 }
 
 bool IsAwaited(const Process& process) {
@@ -61,6 +78,20 @@ void TimerCalls::Delete(Process& process, std::int64_t id) {
   process.timer_fds.erase(id);
 }
 
+// The timer's last descriptor is closed. A call that is on it holds it for as long as that lasts.
+void TimerCalls::Close(Process& process, std::int64_t id) {
+  process.closed_timers.push_back(id);
+  DeleteClosed(process);
+}
+
+void TimerCalls::DeleteClosed(Process& process) {
+  std::erase_if(process.closed_timers, [&](std::int64_t id) {
+    const bool is_held = IsInCall(process, id);
+    if (!is_held) Delete(process, id);
+    return !is_held;
+  });
+}
+
 void TimerCalls::DeletePosix(Process& process) {
   process.timers.DeletePosix();
   std::erase_if(process.timer_fds,
@@ -75,7 +106,7 @@ bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& n
     return false;
   }
   if (note.kind == shm::NotificationKind::kTimerDelete) {
-    Delete(process, id);
+    Close(process, id);
     return false;
   }
   if (!timers.KindOf(id).has_value()) return false;
@@ -147,6 +178,7 @@ bool TimerCalls::FireDue(Robot& robot, VirtualTime now) {
     }
     Process& process = *task->process;
     if (process.timers.NextExpiry() <= now) {
+      if (!process.closed_timers.empty()) DeleteClosed(process);
       process.expired = process.timers.NextExpiry();
       wrote |= Expire(process, now);
     }

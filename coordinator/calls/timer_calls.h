@@ -37,6 +37,8 @@ class TimerCalls {
   static UniqueFd DescriptorOf(const Process& process, int number);
 
  private:
+  static void Close(Process& process, std::int64_t id);
+  static void DeleteClosed(Process& process);
   static void Create(Task& task, const shm::Notification& note);
   bool BringUpToDate(Process& owner, const Task& asking, std::int64_t id);
   static bool Expire(Process& process, VirtualTime now);

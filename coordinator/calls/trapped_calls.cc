@@ -15,7 +15,8 @@ bool TrappedCalls::Handle(Task& task, const TrappedCall& call) {
   task.trap_continues = false;
   task.follow_up = FollowUp::kNone;
   task.brief_done = false;
-  task.expects_kernel = false;
+  task.expects_kernel = task.in_vfork = false;
+  spawns_.MakerSpeaks(task, {task.reached});
   bool looks_again = false;
   if (call.number == SYS_futex) {
     futexes_.Handle(task, call);

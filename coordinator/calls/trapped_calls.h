@@ -7,6 +7,7 @@
 #include "coordinator/calls/guarded_calls.h"
 #include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/raw_calls.h"
+#include "coordinator/calls/spawns.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/processes/deaths.h"
@@ -19,7 +20,7 @@ class TrappedCalls {
  public:
   TrappedCalls(RunState& run, Waker& waker, FutexCalls& futexes, RawCalls& raw,
                const GuardedCalls& guard, Deaths& deaths, Executor& executor,
-               LocalSockets& local_sockets)
+               LocalSockets& local_sockets, Spawns& spawns)
       : run_(run),
         waker_(waker),
         futexes_(futexes),
@@ -27,7 +28,8 @@ class TrappedCalls {
         guard_(guard),
         deaths_(deaths),
         executor_(executor),
-        local_sockets_(local_sockets) {}
+        local_sockets_(local_sockets),
+        spawns_(spawns) {}
 
   // That of a thread that has stopped in it. True: there may be more by now that belongs to this
   // moment.
@@ -48,6 +50,7 @@ class TrappedCalls {
   Deaths& deaths_;
   Executor& executor_;
   LocalSockets& local_sockets_;
+  Spawns& spawns_;
 };
 
 }  // namespace tcs

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "coordinator/calls/call_files.h"
 #include "coordinator/calls/raw_ipc.h"
 #include "coordinator/calls/raw_polls.h"
 #include "coordinator/calls/raw_semaphores.h"
@@ -68,7 +69,7 @@ void TrappedWaits::Finish(Task& task, shm::WakeReason reason) {
   task.trap_continues = false;
   if (watched->transfers) {
     task.trap_result = RawIpc::ResultAtDeadline(task.trapped_call);
-  } else {
+  } else if (!CallFiles::Keeps(task, *watched)) {  // which are looked at once more
     RawPolls::ClearResult(task, task.trapped_call);
   }
 }

@@ -48,9 +48,9 @@ bool ComputingAhead::MaySend(const Task& task) const {
                            process.deadline == VirtualDuration() && !process.robot->is_ideal &&
                            !process.timers.HasCpuTimers();
   const bool is_busy_otherwise =
-      task.is_brief || task.executes || task.spins || task.is_deliverer || task.notified_early ||
-      task.early_trap.has_value() || process.expelled || process.stopped || process.stays_home ||
-      stays_home_ || parts_.run.IsInGrace();
+      task.is_brief || task.executes || task.is_adopted || task.spins || task.is_deliverer ||
+      task.notified_early || task.early_trap.has_value() || process.expelled || process.stopped ||
+      process.stays_home || stays_home_ || parts_.run.IsInGrace();
   // Stopped in the midst of a call, it would do what it is about to do to others in no turn.
   const bool is_in_call = SlotOf(task).open_calls.load() != 0;
   return is_ordinary && !is_busy_otherwise && !is_in_call;
@@ -199,6 +199,7 @@ bool ComputingAhead::TakeTurn(Task& task, VirtualTime horizon) {
   // Whoever was woken meanwhile is not to be left behind further than the drift bound.
   Pay(task, std::min(horizon, parts_.run.root.Horizon(task.cpu->leaf)));
   if (!task.is_ahead) SendIfItComputes(task);
+  ++task.process->changes.turns;
   return true;
 }
 

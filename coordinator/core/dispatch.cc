@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "coordinator/calls/call_files.h"
 #include "coordinator/calls/ipc_notes.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/core/turn_plan.h"
@@ -52,6 +53,7 @@ std::int64_t Engine::ChargedUndispatched(const Task& task) const {
 }
 
 void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) {
+  CallFiles::LookAtNumbers(task);
   shm::ThreadSlot& slot = SlotOf(task);
   shm::ClockPage& page = slot.clock;
   const VirtualCpu& cpu = *task.cpu;
@@ -59,6 +61,7 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   const ProgramTime now = clock.At(cpu.progress);
   MeteredThread& metered = task.metered;
   if (metered.host_origin_ns < 0) metered.host_origin_ns = HostClockOf(task);
+  metered.pays_for_silence = task.process->client->pays_for_silence;
   ClockGrant& grant = task.grant;
   grant.base_time_ns = (now + task.debt).ns();
   grant.base_cpu_ns = task.charged.ns();
@@ -96,9 +99,15 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
 // If something has ended the call meanwhile, the thread is on its way, and needs no answer unless
 // the kernel makes the call again.
 void Engine::AnswerCall(Task& task) {
-  task.WasAnswered(task.trap_continues
-                       ? guard_.Continue(task)
-                       : AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result));
+  const auto answer = [&task] {
+    if (!task.trap_file) {
+      return AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result);
+    }
+    const UniqueFd file = std::move(task.trap_file);
+    return AnswerTrappedByFile(task.trap_listener, task.trap_id, file.get(),
+                               task.trap_file_on_exec);
+  };
+  task.WasAnswered(task.trap_continues ? guard_.Continue(task) : answer());
 }
 
 // Who may run is changed and a gate opened: with the coordinator blocking next, which is when the
@@ -112,7 +121,7 @@ void Engine::Resume(Task& task) {
     host_cpu_.Start(task, task.spins);
     if (task.slot >= 0) SlotOf(task).clock.horizon_ns = task.grant.horizon_ns;
   }
-  if (task.slot < 0) registration_.LetRegister(task);
+  if (task.slot < 0 || task.is_adopted) registration_.LetRegister(task);
   if (task.trap_id != 0) {
     AnswerCall(task);
   } else if (task.slot >= 0 && is_at_gate) {
@@ -314,6 +323,10 @@ void Engine::AwaitStop(Task& task) {
       continue;
     }
     const Meter::Found found = host_cpu_.Look(task, OwnHorizon(), CpuClockOf(task));
+    if (found == Meter::Found::kIsSilent && !task.process->robot->is_ideal) {
+      ChargeSilence(task);
+      continue;
+    }
     task.spins = found == Meter::Found::kIsSilent;
     if (found != Meter::Found::kGoesOn) {
       run_.turn.timed_out = true;
@@ -322,26 +335,29 @@ void Engine::AwaitStop(Task& task) {
   }
 }
 
-// Under set costs computing takes no time, so a thread that spins on what others write to memory
-// would spin for ever. It waits until somebody has run, and looks again, as long as it makes no
-// call.
+// Under set costs a thread that spins on what others write to memory would spin for ever, for
+// computing takes no time. From now on it does, in this client (fixed_meter.h).
+void Engine::ChargeSilence(Task& task) {
+  Process& client = *task.process->client;
+  client.pays_for_silence = task.metered.pays_for_silence = true;
+  run_.Warn(client.name +
+            " has computed for 5 s without a call or an allocation, which costs nothing under "
+            "--accounting fixed; from here on each half a millisecond of that, by the processor's "
+            "clock, costs it 0.5 ms, and the run may not repeat; run it with --accounting "
+            "measured");
+}
+
+// On an ideal robot computing never takes time. The thread waits until somebody has run, and looks
+// again, as long as it makes no call.
 void Engine::StepAside(Task& task) {
   if (run_.turn.HasSpoken() || task.state == TaskState::kDead) {
     task.spins = false;
     return;
   }
-  const Process& process = *task.process;
-  if (process.robot->is_ideal) {
-    run_.Warn(process.name +
-              " has computed for 10 s at one instant of virtual time; its robot is ideal, so the "
-              "world waits for it, but no longer than that; from here on it counts as waiting for "
-              "other programs");
-  } else {
-    run_.Warn(process.name +
-              " has computed for 5 s without a call or an allocation; under --accounting fixed "
-              "that counts as waiting for other programs, and makes the run depend on the host; "
-              "run it with --accounting measured");
-  }
+  run_.Warn(task.process->name +
+            " has computed for 10 s at one instant of virtual time; its robot is ideal, so the "
+            "world waits for it, but no longer than that; from here on it counts as waiting for "
+            "other programs");
   waker_.Wait(task, {awaited::OthersRun{}});
   has_spinners_ = true;
   waker_.Refresh(*task.process->robot);
@@ -382,6 +398,8 @@ void Engine::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   task.is_brief = task.follow_up != FollowUp::kNone && !task.brief_done;
   // How far it comes in so short a time is the host's: under set costs no further than the call.
   if (task.is_brief && run_.IsFixed()) horizon = task.cpu->progress;
+  // Others may have something to do as soon as the kernel has carried its call out.
+  if (task.is_brief || !task.births.empty()) idle_until = {};
   run_.turn.Begin(task, horizon);
   says_call_ = opens_gate_ = false;
   if (task.state == TaskState::kHolding) waker_.SetState(task, TaskState::kReady);
@@ -410,6 +428,7 @@ void Engine::NoteTurnBegins(Task& task) {
 void Engine::EndTurn(Task& task) {
   host_cpu_.active().TakeBack();
   if (task.state != TaskState::kDead) Settle(task);
+  CallFiles::NoteTurn(task);
   undispatched_.TurnEnds(task);
   run_.turn.End();
   run_.latest = task.cpu->progress;
@@ -424,6 +443,7 @@ void Engine::TellOthersOf(Task& task, Moment call, bool looks_again) {
   const bool sent_signal = task.follow_up == FollowUp::kSignals;
   if (task.follow_up != FollowUp::kNone) follow_ups_.Do(task, call, looks_again);
   if (sent_signal && run_.gates_only) AwaitSleepAtGates(call);
+  if (!run_.turn.HasSpoken()) spawns_.TurnEnds(task, stop);
   task.process->timers.EndRests(stop.at);
   if (run_.turn.HasSpoken()) shared_events_.PassOn(task, stop);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
@@ -454,6 +474,10 @@ void Engine::Answer(Task& task) {
 void Engine::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until) {
   TakeAgainIfUnmarked(task);
   if (AnswerEarly(task)) return;
+  if (kept_calls_.WaitsAgain(task)) {
+    PollEvents(kNoWait, {task.reached});
+    return;
+  }
   if (run_.gates_only && BringOthersToGates(task, {task.reached}).stops_running) return;
   const bool looks_again = task.brief_done;
   const Moment call{task.cpu->progress};

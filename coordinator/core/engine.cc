@@ -185,6 +185,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     ahead_.SendIfItComputes(task);
     if (TakePutOff({run_.latest}).looks_again) PollEvents(kNoWait, {run_.latest});
     registration_.RegisterUnannounced({run_.latest});
+    TakeCallsOfNewborns({run_.latest});
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
   const VirtualDuration advanced = cpu.progress - start;

@@ -23,6 +23,7 @@
 #include "coordinator/calls/futex_calls.h"
 #include "coordinator/calls/futex_words.h"
 #include "coordinator/calls/guarded_calls.h"
+#include "coordinator/calls/kept_calls.h"
 #include "coordinator/calls/kernel_object_waits.h"
 #include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/lock_futexes.h"
@@ -108,6 +109,7 @@ class Engine {
   [[nodiscard]] std::string PrepareMemory();
   [[nodiscard]] std::string PrepareSignals();
   [[nodiscard]] std::string PrepareHostCpu();
+  std::optional<std::uint64_t> TurnsSeed() const;
   void MakeRobots();
   void TellOfWaits();
   void TellOfEnds();
@@ -172,6 +174,7 @@ class Engine {
   void Settle(Task& task);
   bool TakeNotesOf(Task& task);
   void TakeOutUntold(Task& task, const shm::ClockReading& before, HostDuration asked);
+  void ChargeSilence(Task& task);
   void StepAside(Task& task);
   void WakeSpinners();
 
@@ -195,6 +198,8 @@ class Engine {
   // System calls that the kernel hands over (trapped.cc).
   Reactor::Found TrapArrived(int listener, Moment moment);
   Reactor::Found TakeTrapped(const TrappedCall& call, Moment moment);
+  void TakeCallsOfNewborns(Moment moment);
+  Task* TaskOf(const TrappedCall& call);
 
   static constexpr HostDuration kNoWait{};  // what is there is looked at, and nothing waited for
   // Events (events.cc). A negative timeout: none. What is found happens at `moment`, or
@@ -295,16 +300,21 @@ class Engine {
   Deaths deaths_{run_, waker_, reactor_, host_cpu_, usage_};
   TrapListeners traps_{reactor_};
   RegistrationSockets sockets_{reactor_};
-  Registration registration_{{run_, waker_, reactor_, host_cpu_, sockets_, births_, deaths_, dds_},
-                             [this](Process& process, Moment moment) {
-                               TimerCalls::DeletePosix(process);
-                               dds_.Leave(process, moment);
-                             }};
+  Registration registration_{
+      {run_, waker_, reactor_, host_cpu_, sockets_, bare_programs_, births_, deaths_, dds_},
+      [this](Process& process, Moment moment) {
+        TimerCalls::DeletePosix(process);
+        dds_.Leave(process, moment);
+      }};
   Launches launches_{run_, waker_, births_, sockets_, traps_, world_, network_, guard_.guarded()};
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{run_.table, reactor_, unmanaged_};
   Grace grace_{run_, reactor_, unknown_children_,
                [this](Moment moment) { signals_.Sent(0, moment); }};
+
+  Spawns spawns_{run_,
+                 {*executor_, births_, registration_, scheduling_, bare_programs_,
+                  unknown_children_, unmanaged_}};
 
   // Calls that are made raw.
   RawTimes raw_times_{run_, waker_};
@@ -322,12 +332,12 @@ class Engine {
                       [this](Task& task) { return notifications_.Yield(task); },
                       [this](Task& task, const TrappedCall& call) { trapped_.Exit(task, call); }};
   TrappedWaits trapped_waits_{words_, raw_child_waits_, activations_};
-  TrappedCalls trapped_{run_,   waker_,  futexes_,   raw_calls_,
-                        guard_, deaths_, *executor_, local_sockets_};
-  FollowUps follow_ups_{run_, objects_, shared_events_, signals_, signal_wakes_};
+  TrappedCalls trapped_{run_,    waker_,     futexes_,       raw_calls_, guard_,
+                        deaths_, *executor_, local_sockets_, spawns_};
+  KeptCalls kept_calls_{waker_, descriptors_};
+  FollowUps follow_ups_{run_, objects_, shared_events_, signals_, signal_wakes_, spawns_};
 
   // What they notify.
-  Spawns spawns_{run_, *executor_, births_, scheduling_, unmanaged_};
   Notifications notifications_{run_,
                                waker_,
                                {expulsion_, descriptors_, unknown_children_, timers_, spawns_,
@@ -357,6 +367,7 @@ class Engine {
   // Of the running thread, where there are only gates: it says that a call begins, and may go on.
   bool says_call_ = false, opens_gate_ = false;
   std::vector<Late> put_off_;
+  std::vector<TrappedCall> unborn_calls_;  // of threads that are to be known soon
 
   bool reached_end_ = false;
   std::optional<VirtualTime> idle_at_;  // where nobody acts by itself,

@@ -135,7 +135,8 @@ bool Engine::BlockedInKernel() {
   if (state == 'S' && CutsOff(task)) return task.process->expelled;
   if (state == 't' && debugger_.IsOf(*task.process)) return false;  // and everybody with it
   const bool stopped = state == 'T' || state == 't';                // until a signal, or its tracer
-  if (!stopped && (state != 'S' || task.slot < 0)) {
+  const bool in_vfork = state == 'D' && task.in_vfork;
+  if (!stopped && !in_vfork && (state != 'S' || task.slot < 0)) {
     if (state == 'D') held_.LendLevel();
     return false;
   }

@@ -40,8 +40,8 @@ bool SendsSignal(const Task& task) {
 bool MayCompute(const Task& task) {
   const bool has_stopped = task.parked || task.trap_id != 0 || task.early_trap.has_value() ||
                            task.notified_early || task.is_put_off || task.is_call_put_off;
-  return task.state != TaskState::kDead && task.slot >= 0 && !has_stopped && !task.executes &&
-         !task.process->expelled;
+  return task.state != TaskState::kDead && task.slot >= 0 && task.can_be_stopped && !has_stopped &&
+         !task.executes && !task.process->expelled;
 }
 
 // It waits at its gate, as it has said, but does not sleep there: it is on its way, or a handler
@@ -105,8 +105,11 @@ Reactor::Found Engine::EndCall(Reactor::Found found) {
 // gate, and waited for, so that nobody runs beside it. Where it does not come (its program blocks
 // the signal, or the kernel has it) it computes on, and owes what it computes.
 void Engine::BringToGate(Task& task) {
-  const bool computes = run_.Preempts() && task.slot >= 0 && Waker::IsRunnable(task) &&
-                        !task.parked && !run_.turn.HasSpoken() && !task.is_brief &&
+  // Where computing costs nothing, it may compute on, unless it pays for that (fixed_meter.h).
+  const bool is_charged =
+      run_.Preempts() || (run_.gates_only && task.metered.pays_for_silence && run_.turn.timed_out);
+  const bool computes = is_charged && task.slot >= 0 && Waker::IsRunnable(task) && !task.parked &&
+                        !run_.turn.HasSpoken() && !task.is_brief && task.can_be_stopped &&
                         !task.executes && !task.process->expelled;
   if (!computes || !task.HasOwnClock() || ThreadState(task.tid) != 'R') return;
   const HostDuration sent = HostNs(HostClockOf(task));

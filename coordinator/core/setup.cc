@@ -17,6 +17,7 @@
 #include <new>
 #include <utility>
 
+#include "coordinator/calls/call_files.h"
 #include "coordinator/calls/scheduling_rights.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/core/locks.h"
@@ -204,13 +205,20 @@ std::string Engine::PrepareSignals() {
   return {};
 }
 
+// Of the next robot.
+std::optional<std::uint64_t> Engine::TurnsSeed() const {
+  if (!run_.IsFixed()) return std::nullopt;
+  return run_.scenario.seed * 0x9e3779b97f4a7c15 + run_.robots.size();
+}
+
 void Engine::MakeRobots() {
   for (const RobotSpec& spec : run_.scenario.robots) {
     const auto cores = static_cast<std::uint32_t>(spec.cores);
     Robot& robot = run_.robots.emplace_back(
-        spec.name, spec.speed, RobotScheduler(cores, !run_.IsCallback(), [this](int order) {
-          return waker_.WaitOf(run_.table.At(order));
-        }));
+        spec.name, spec.speed,
+        RobotScheduler(
+            cores, !run_.IsCallback(),
+            [this](int order) { return waker_.WaitOf(run_.table.At(order)); }, TurnsSeed()));
     robot.number = static_cast<std::uint32_t>(run_.robots.size());
     robot.is_ideal = spec.is_ideal;
     robot.is_ours = spec.is_ours;
@@ -260,9 +268,10 @@ void Engine::TellOfWaits() {
             signal_wakes_.EndAwait(task, SignalsOf(run_, task), {task.reached});
           },
       .left =
-          [this](Task& task, const Wait& left) {
+          [this](Task& task, Wait& left) {
             if (const auto* descriptors = left.As<awaited::Descriptors>())
               descriptors_.Leave(*descriptors);
+            CallFiles::Keep(task, left);
             words_.table().Leave(task.order);
             objects_.Leave(task);
             inheritance_.Leave(task);
@@ -287,6 +296,7 @@ void Engine::TellOfEnds() {
             objects_.Forget(task);
             ahead_.Forget(task);
             registration_.Forget(task);
+            task.kept.reset();
           },
       .wake_those_waiting_for = [this](Task& task,
                                        Moment moment) { locks_.WakeThoseWaitingFor(task, moment); },

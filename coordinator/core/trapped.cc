@@ -1,6 +1,9 @@
 // System calls of clients that the kernel hands over.
 #include <sys/syscall.h>
 
+#include <utility>
+
+#include "coordinator/calls/call_files.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "shm/check.h"
@@ -8,6 +11,12 @@
 namespace tcs {
 
 namespace {
+
+// What a child that has its parent's memory and place (spawns.h) does to time, it does to the
+// parent's. All else is the child's own.
+bool IsSleep(const TrappedCall& call) {
+  return call.number == SYS_nanosleep || call.number == SYS_clock_nanosleep;
+}
 
 // The kernel has the thread make the call again in which it waits for its answer, as it is: the
 // thread was frozen meanwhile with its container or the machine, say, or a tracer has looked at it.
@@ -42,15 +51,27 @@ void Engine::TakeAgainIfUnmarked(Task& task) {
   task.trap_id = 0;
 }
 
+// Null: nobody's who is known.
+Task* Engine::TaskOf(const TrappedCall& call) {
+  Task* task = run_.table.Living(call.tid);
+  return task == nullptr && IsSleep(call) ? spawns_.ActsFor(call.tid) : task;
+}
+
 // A trapped call has arrived. That of the running thread stops it like a notification.
 Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
   if (!call.has_value()) return {.stops_running = !run_.gates_only, .wakes_others = true};
+  if (CallFiles::AsksFor(*call)) {
+    CallFiles::Answer(run_.table.Living(call->tid), *call);
+    return {};
+  }
   const auto take = [this, call](Moment at) { return TakeTrapped(*call, at); };
   Task* by = run_.table.Living(call->tid);
   if (by != nullptr && by->turns_beside) return take(moment);
   if (IsExecution(*call) || IsEnd(*call)) {
     if (by != nullptr) by->executes = IsExecution(*call);
+    // What it has made is not its child any more afterwards, or not in its place.
+    if (by != nullptr) spawns_.MakerSpeaks(*by, moment);
     // Nobody else may have the process's descriptors when they are closed.
     Process* process = run_.table.LivingProcess(ProcessOfThread(call->tid));
     if (process != nullptr && process->porter != nullptr) process->porter->End();
@@ -63,15 +84,37 @@ Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
     guard_.LetThrough(*call);
     return {};
   }
-  if (by == nullptr) by = registration_.Adopt(call->tid, moment);
+  if (MakesTask(*call) && by != nullptr && run_.turn.IsOf(*by) && Spawns::IsAnnounced(*by)) {
+    Spawns::Begin(*by, *call);
+    guard_.LetThrough(*call);
+    return {};
+  }
+  const bool has_place = by != nullptr && (by->slot >= 0 || !by->process->is_bare);
+  if (!has_place) by = registration_.Adopt(call->tid, moment);
+  if (by == nullptr && spawns_.IsUnborn(call->tid, moment)) {
+    unborn_calls_.push_back(*call);
+    return {};
+  }
+  if (by == nullptr) by = TaskOf(*call);
   const bool waits = by != nullptr && (by->slot >= 0 || call->number == SYS_futex);
   if (!waits || !PutOff(by, take)) return take(moment);
   by->is_call_put_off = true;
   return {};
 }
 
+// Their makers have gone on, so that it is known whose they are.
+void Engine::TakeCallsOfNewborns(Moment moment) {
+  for (const TrappedCall& call : std::exchange(unborn_calls_, {})) {
+    if (spawns_.IsUnborn(call.tid, moment)) {
+      unborn_calls_.push_back(call);
+    } else {
+      TakeTrapped(call, moment);
+    }
+  }
+}
+
 Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
-  Task* task = run_.table.Living(call.tid);
+  Task* task = TaskOf(call);
   if (task != nullptr) task->is_call_put_off = false;
   // Before it registers a thread is known if it was announced, and others may wait with it for a
   // lock of the C library; what else it calls then is the loader's business.

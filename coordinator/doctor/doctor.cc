@@ -6,6 +6,7 @@
 #include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,6 +25,7 @@
 #include "coordinator/os/real_time_facts.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
+#include "shm/layout.h"
 
 namespace tcs {
 
@@ -81,7 +83,11 @@ Finding TryShim(const std::string& path) {
 // In a child, for a filter stays for ever.
 int TryTrap() {
   const pid_t child = fork();
-  if (child == 0) _exit(InstallTrap({}) >= 0 ? 0 : errno);
+  if (child == 0) {
+    const int error = InstallTrap({}) >= 0 ? 0 : errno;
+    // Nobody would answer the end of the process, which is trapped; that of its one thread is not.
+    syscall(SYS_exit, error, 0, 0, 0, 0, shm::kOwnCallMark);
+  }
   int status = -1;
   if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return ECHILD;
   return WEXITSTATUS(status);

@@ -1,8 +1,32 @@
 #include "coordinator/host/fixed_meter.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "shm/set_costs.h"
+
 namespace tcs {
+
+namespace {
+
+// The timer and the thread's CPU clock do not agree to this.
+constexpr HostDuration kLeastLook = HostDuration::Microseconds(50);
+
+void Charge(shm::ClockPage& page, VirtualDuration cost) {
+  std::uint64_t word = page.executed_adjust.load();
+  // Where nothing but its gate stops the thread, it may charge itself meanwhile.
+  while (!page.executed_adjust.compare_exchange_weak(
+      word, shm::PackAdjust(word, shm::AdjustValue(word) + cost.ns()))) {
+  }
+}
+
+// What it has been charged since it was looked at last is of calls and allocations: they break the
+// silence, whether they take it to its horizon or not. Sleeping costs a call, too.
+bool HasMadeCalls(MeteredThread& thread, const shm::ClockReading& now) {
+  return std::exchange(thread.silent_cpu_ns, now.cpu_ns) != now.cpu_ns;
+}
+
+}  // namespace
 
 void FixedMeter::SetRates(const MeteredThread& thread, const SetCosts& costs,
                           ClockGrant& grant) const {
@@ -10,38 +34,55 @@ void FixedMeter::SetRates(const MeteredThread& thread, const SetCosts& costs,
   grant.ns_per_tick_q32 = 0;
   grant.check_after_ticks = ~std::uint64_t{0};
   grant.call_cost_ns = costs.call.ns();
-  grant.allocation_cost_ns = costs.allocation.ns();
+  grant.allocation_cost_ns =
+      costs.allocation.has_value() ? costs.allocation->ns() : shm::kUsualAllocationCost;
 }
 
 std::uint64_t FixedMeter::Begin(MeteredThread& thread, std::uint64_t tsc, bool, bool is_silent) {
-  thread.silent_at = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
   thread.silent_looks = 0;
   thread.is_silent = is_silent;
+  thread.next_look = kLookAtSilentEvery;
+  if (HasMadeCalls(thread, shm::ReadClockAt(*thread.page, tsc))) thread.silent_from_ns = -1;
   return tsc;
 }
 
 HostDuration FixedMeter::TimeToLook(MeteredThread& thread, std::uint64_t, ProgramTime) {
-  return thread.is_silent ? kLookAtSilentEvery : kLookEvery;
+  return thread.pays_for_silence ? thread.next_look : kLookEvery;
 }
 
-// Calls and allocations move its clock, whether it comes to its horizon by them or not.
-Meter::Found FixedMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime,
-                              const CpuClock&) {
-  const ProgramTime now = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
-  if (std::exchange(thread.silent_at, now) != now) {
-    thread.is_silent = false;
-    thread.silent_looks = 0;
-    return Found::kGoesOn;
+Meter::Found FixedMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
+                              const CpuClock& clock) {
+  const shm::ClockReading now = shm::ReadClockAt(*thread.page, tsc);
+  const bool has_made_calls = HasMadeCalls(thread, now);
+  if (thread.pays_for_silence) {
+    if (has_made_calls) thread.silent_from_ns = -1;
+    return LookAtSilent(thread, now, horizon, clock());
   }
-  if (!thread.is_silent && ++thread.silent_looks < kSilentLooks) return Found::kGoesOn;
-  thread.is_silent = true;
-  return Found::kIsSilent;
+  thread.silent_looks = has_made_calls ? 0 : thread.silent_looks + 1;
+  return thread.silent_looks < kSilentLooks ? Found::kGoesOn : Found::kIsSilent;
+}
+
+Meter::Found FixedMeter::LookAtSilent(MeteredThread& thread, const shm::ClockReading& now,
+                                      ProgramTime horizon, std::int64_t cpu_ns) {
+  if (thread.silent_from_ns < 0) thread.silent_from_ns = cpu_ns;
+  HostDuration silent = HostNs(cpu_ns - thread.silent_from_ns);
+  const bool is_charged = silent >= kLookAtSilentEvery;
+  if (is_charged) {
+    Charge(*thread.page, kSilentCost);
+    thread.silent_cpu_ns += kSilentCost.ns();
+    silent -= kLookAtSilentEvery;
+    // It ran for longer while the coordinator did not look: that is nobody's.
+    if (silent >= kLookAtSilentEvery) silent = {};
+    thread.silent_from_ns = cpu_ns - silent.ns();
+  }
+  thread.next_look = std::max(kLookAtSilentEvery - silent, kLeastLook);
+  const VirtualDuration cost = is_charged ? kSilentCost : VirtualDuration();
+  return OwnTime(now.time_ns) + cost >= horizon ? Found::kAtHorizon : Found::kGoesOn;
 }
 
 // The shim charges the calls that it sees, whatever the C library calls for it.
 void FixedMeter::ChargeCall(MeteredThread& thread, VirtualDuration cost) {
-  const std::uint64_t word = thread.page->executed_adjust.load();
-  thread.page->executed_adjust.store(shm::PackAdjust(word, shm::AdjustValue(word) + cost.ns()));
+  Charge(*thread.page, cost);
 }
 
 }  // namespace tcs

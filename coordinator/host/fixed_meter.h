@@ -2,6 +2,11 @@
 // nothing for what it computes between them. So no clock of the host matters, and a thread never
 // comes to its horizon by computing: one that spins on what others write to memory would spin for
 // ever. It is looked at now and then, and found silent when it has made no call for long.
+//
+// From then on its client computes for long without calls, as is known: a thread of it that has
+// computed for half a millisecond by its own CPU clock since its last call is charged as much, a
+// set cost. So it comes to its horizon as any other thread does. Where between its calls that
+// happens is the host's.
 #pragma once
 
 #include "coordinator/host/meter.h"
@@ -11,8 +16,10 @@ namespace tcs {
 class FixedMeter : public Meter {
  public:
   static constexpr HostDuration kLookEvery = HostDuration::Milliseconds(50);
-  static constexpr int kSilentLooks = 100;  // until it is taken to spin
-  static constexpr HostDuration kLookAtSilentEvery = HostDuration::Milliseconds(1);  // from then on
+  static constexpr int kSilentLooks = 100;  // until it is found silent
+  // Of a client that is known for it.
+  static constexpr HostDuration kLookAtSilentEvery = HostDuration::Microseconds(500);
+  static constexpr VirtualDuration kSilentCost = VirtualDuration::Microseconds(500);
 
   void SetRates(const MeteredThread& thread, const SetCosts& costs,
                 ClockGrant& grant) const override;
@@ -29,6 +36,10 @@ class FixedMeter : public Meter {
   void Check(MeteredThread&, std::uint64_t, const CpuClock&) override {}
   void End(MeteredThread&, std::uint64_t, const CpuClock&) override {}
   void ChargeCall(MeteredThread& thread, VirtualDuration cost) override;
+
+ private:
+  static Found LookAtSilent(MeteredThread& thread, const shm::ClockReading& now,
+                            ProgramTime horizon, std::int64_t cpu_ns);
 };
 
 }  // namespace tcs

@@ -1,6 +1,6 @@
 // Charges a thread nothing at all: that of an ideal robot, whose clock stands still while it
 // computes and goes on only while it waits. So it never comes to a horizon by what it does. One
-// that computes on and on is found silent in the end, as under set costs.
+// that computes on and on is found silent in the end, and waits for others then.
 #pragma once
 
 #include "coordinator/host/fixed_meter.h"
@@ -10,9 +10,13 @@ namespace tcs {
 class IdealMeter final : public FixedMeter {
  public:
   static constexpr int kMostLooks = 200;  // kLookEvery apart: 10 s
+  static constexpr HostDuration kLookAgainEvery = HostDuration::Milliseconds(1);  // from then on
 
   void SetRates(const MeteredThread& thread, const SetCosts&, ClockGrant& grant) const override {
-    FixedMeter::SetRates(thread, {}, grant);
+    FixedMeter::SetRates(thread, {.call = {}, .allocation = VirtualDuration()}, grant);
+  }
+  HostDuration TimeToLook(MeteredThread& thread, std::uint64_t, ProgramTime) override {
+    return thread.is_silent ? kLookAgainEvery : kLookEvery;
   }
   Found Look(MeteredThread& thread, std::uint64_t, ProgramTime, const CpuClock&) override {
     if (!thread.is_silent && ++thread.silent_looks < kMostLooks) return Found::kGoesOn;

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "coordinator/host/clock_grant.h"
 #include "coordinator/host/switch_costs.h"
@@ -42,9 +43,15 @@ struct MeteredThread {
   UncheckedRuns unchecked_runs;       // by the coordinator
   std::uint64_t asked_tsc = 0;        // when it was last said how long it may run,
   HostDuration asked;                 // and how long
-  ProgramTime silent_at;              // its clock when it was last looked at
-  int silent_looks = 0;               // in a row that have found it there
-  bool is_silent = false;             // it computes without a call
+  // Under set costs (fixed_meter.h): what it had been charged when it was last looked at; how many
+  // looks in a row have found it there; what its CPU clock said when it was first found there, or
+  // charged for it, -1: it has not been; and when it is looked at next.
+  std::int64_t silent_cpu_ns = 0;
+  int silent_looks = 0;
+  std::int64_t silent_from_ns = -1;
+  HostDuration next_look;
+  bool pays_for_silence = false;  // its client is known to compute for long without a call
+  bool is_silent = false;         // on an ideal robot: it has been found so
 
   // Host time and virtual time are made of each other here only.
   HostDuration OnHost(VirtualDuration computed) const {
@@ -66,15 +73,16 @@ class Meter {
   // The thread's own CPU clock, in nanoseconds, by a system call; -1 if it cannot be read any more.
   using CpuClock = std::function<std::int64_t()>;
 
-  // What the scenario says that calls and allocations cost.
+  // What the scenario says that calls and allocations cost; none: as shm/set_costs.h has it.
   struct SetCosts {
-    VirtualDuration call, allocation;
+    VirtualDuration call;
+    std::optional<VirtualDuration> allocation;
   };
 
   enum class Found {
     kGoesOn,     // it may run on
     kAtHorizon,  // it has to stop
-    kIsSilent,   // it computes on and on without a call, where computing takes no time: also this
+    kIsSilent,   // it computes on and on without a call, where computing takes no time
   };
 
   virtual ~Meter() = default;

@@ -64,6 +64,13 @@ bool IsSameFile(int one, int other) {
   return compared == 0 || (IsRefused(compared) && IsSameFileBySet(one, other));
 }
 
+std::optional<bool> Means(pid_t tid, int number, int own) {
+  const long compared = syscall(SYS_kcmp, getpid(), tid, KCMP_FILE, own, number);
+  if (compared >= 0) return compared == 0;
+  if (errno == EBADF) return false;
+  return std::nullopt;
+}
+
 std::vector<EpollEntry> EntriesOf(int epoll_fd) {
   std::vector<EpollEntry> entries;
   std::ifstream file("/proc/self/fdinfo/" + std::to_string(epoll_fd));

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +16,10 @@ namespace tcs {
 // (kcmp) by the second way, which knows only files that can be polled.
 bool IsSameFile(int one, int other);
 bool IsSameFileBySet(int one, int other);
+
+// Whether the other thread's descriptor of that number is the open file `own`, of this process's.
+// None where the kernel refuses to say.
+std::optional<bool> Means(pid_t tid, int number, int own);
 
 struct EpollEntry {
   int fd = -1;               // as it was when it was added, in the process that added it

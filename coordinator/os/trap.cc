@@ -51,8 +51,8 @@ constexpr std::uint32_t kTrapped[] = {
     SYS_sched_yield, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr,
     SYS_sched_setaffinity, SYS_sched_getaffinity, SYS_sched_getscheduler, SYS_sched_getparam,
     SYS_sched_getattr, SYS_sched_rr_get_interval, SYS_getcpu,
-    // The end of a thread.
-    SYS_exit,
+    // The end of a thread, and the beginnings of threads and processes (clone_call.h).
+    SYS_exit, SYS_clone, SYS_clone3, SYS_fork, SYS_vfork,
     // Refused, so that programs take the calls that are known here.
     SYS_io_uring_setup,
     // Sandboxes that would keep new threads from the coordinator (landlock.h).
@@ -204,7 +204,7 @@ int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
   if (!has_level || too.executions) {
     numbers.unmarked.assign(std::begin(kExecutions), std::end(kExecutions));
   }
-  if (too.ends) numbers.unmarked.push_back(kEnd);
+  numbers.unmarked.push_back(kEnd);
   std::vector<sock_filter> program = Program(guarded, numbers);
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   auto install = [&filter](unsigned more) {
@@ -233,6 +233,11 @@ bool BeginsProgram(const TrappedCall& call) { return call.number == SYS_arch_prc
 
 bool IsEnd(const TrappedCall& call) { return static_cast<std::uint32_t>(call.number) == kEnd; }
 
+bool MakesTask(const TrappedCall& call) {
+  return call.number == SYS_clone || call.number == SYS_clone3 || call.number == SYS_fork ||
+         call.number == SYS_vfork;
+}
+
 std::optional<TrappedCall> ReceiveTrapped(int listener) {
   seccomp_notif notification{};
   if (ioctl(listener, SECCOMP_IOCTL_NOTIF_RECV, &notification) != 0) return std::nullopt;
@@ -254,6 +259,28 @@ bool AnswerTrapped(int listener, std::uint64_t id, std::int64_t result) {
     response.val = result;
   }
   return ioctl(listener, SECCOMP_IOCTL_NOTIF_SEND, &response) == 0;
+}
+
+namespace {
+
+int AddFile(int listener, std::uint64_t id, int file, bool on_exec, unsigned flags) {
+  seccomp_notif_addfd added{};
+  added.id = id;
+  added.flags = flags;
+  added.srcfd = static_cast<std::uint32_t>(file);
+  added.newfd_flags = on_exec ? 0 : O_CLOEXEC;
+  return ioctl(listener, SECCOMP_IOCTL_NOTIF_ADDFD, &added);
+}
+
+}  // namespace
+
+bool AnswerTrappedByFile(int listener, std::uint64_t id, int file, bool on_exec) {
+  return AddFile(listener, id, file, on_exec, SECCOMP_ADDFD_FLAG_SEND) >= 0 ||
+         AnswerTrapped(listener, id, -errno);
+}
+
+int PutFileInto(int listener, std::uint64_t id, int file, bool on_exec) {
+  return AddFile(listener, id, file, on_exec, 0);
 }
 
 bool ContinueTrapped(int listener, std::uint64_t id) {
@@ -278,6 +305,18 @@ bool ReadMemory(pid_t pid, const RemotePiece& first, const RemotePiece& second) 
                           {reinterpret_cast<void*>(second.address), second.size}};
   return process_vm_readv(pid, local, 2, remote, 2, 0) ==
          static_cast<ssize_t>(first.size + second.size);
+}
+
+bool ReadMemory(pid_t pid, const std::vector<iovec>& from, void* to, std::size_t size) {
+  const iovec local{to, size};
+  return size == 0 || process_vm_readv(pid, &local, 1, from.data(), from.size(), 0) ==
+                          static_cast<ssize_t>(size);
+}
+
+bool WriteMemory(pid_t pid, const std::vector<iovec>& to, const void* from, std::size_t size) {
+  const iovec local{const_cast<void*>(from), size};
+  return size == 0 ||
+         process_vm_writev(pid, &local, 1, to.data(), to.size(), 0) == static_cast<ssize_t>(size);
 }
 
 bool WriteMemory(pid_t pid, std::uint64_t address, const void* from, std::size_t size) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <sys/types.h>
+#include <sys/uio.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -31,7 +32,6 @@ struct TrappedCall {
 // What is trapped in some runs only.
 struct TrappedToo {
   bool executions = false;  // of other programs, the shim's, too; always where there are no levels
-  bool ends = false;        // of processes, the shim's, too
   bool draws = false;       // of random numbers
 };
 
@@ -55,8 +55,11 @@ bool BeginsProgram(const TrappedCall& call);
 // It sends a signal, to others or to itself.
 bool SendsSignal(const TrappedCall& call);
 
-// It ends its process.
+// It ends its process, by the shim's doing, too.
 bool IsEnd(const TrappedCall& call);
+
+// It makes a thread or a process (clone_call.h).
+bool MakesTask(const TrappedCall& call);
 
 // The next call that waits at `listener`; none if its thread has gone meanwhile.
 std::optional<TrappedCall> ReceiveTrapped(int listener);
@@ -64,6 +67,11 @@ std::optional<TrappedCall> ReceiveTrapped(int listener);
 // Ends the call with `result`, negative for an errno. False if the thread no longer waits there: a
 // signal has ended the call.
 bool AnswerTrapped(int listener, std::uint64_t id, std::int64_t result);
+// Ends it with a descriptor of the file, which the caller has from then on; `on_exec`: also when it
+// executes another program.
+bool AnswerTrappedByFile(int listener, std::uint64_t id, int file, bool on_exec);
+// The same without ending it. The number, or -1: errno is set.
+int PutFileInto(int listener, std::uint64_t id, int file, bool on_exec);
 // Lets the kernel carry it out.
 bool ContinueTrapped(int listener, std::uint64_t id);
 
@@ -93,5 +101,8 @@ struct RemotePiece {
 };
 bool ReadMemory(pid_t pid, const RemotePiece& first, const RemotePiece& second);
 bool WriteMemory(pid_t pid, std::uint64_t address, const void* from, std::size_t size);
+// As much as `size` from, or to, several places one after the other.
+bool ReadMemory(pid_t pid, const std::vector<iovec>& from, void* to, std::size_t size);
+bool WriteMemory(pid_t pid, const std::vector<iovec>& to, const void* from, std::size_t size);
 
 }  // namespace tcs

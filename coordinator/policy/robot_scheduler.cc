@@ -58,6 +58,7 @@ void RobotScheduler::Add(Thread thread, int client_priority) {
   entity.thread = thread;
   entity.client_priority = client_priority;
   entity.allowed = EveryCore();
+  BeginTurn(entity, {});
   glances_.emplace_back().priority = client_priority;
   stale_.push_back(thread);
 }
@@ -103,6 +104,20 @@ std::optional<VirtualDuration> RobotScheduler::QuantumOf(const Entity& entity) {
   return entity.parameters.policy == SCHED_RR ? kRoundRobinQuantum : kQuantum;
 }
 
+void RobotScheduler::BeginTurn(Entity& entity, VirtualTime now) {
+  entity.turn = {};
+  DrawTurnLength(entity, now);
+}
+
+void RobotScheduler::DrawTurnLength(Entity& entity, VirtualTime now) const {
+  const auto quantum = QuantumOf(entity);
+  if (quantum.has_value()) entity.turn_length = lengths_.OfTurn(entity.thread, now, *quantum);
+}
+
+bool RobotScheduler::HasUsedTurnUp(const Entity& entity) {
+  return QuantumOf(entity).has_value() && entity.turn >= entity.turn_length;
+}
+
 void RobotScheduler::StartServer(Entity& entity, VirtualTime now) {
   if (!HasDeadline(entity)) return;
   const bool is_own = entity.parameters.policy == SCHED_DEADLINE;
@@ -115,6 +130,7 @@ void RobotScheduler::SetParameters(Thread thread, const SchedulingParameters& pa
                                    VirtualTime now) {
   ChargeBudgetOf(thread);
   At(thread).parameters = parameters;
+  DrawTurnLength(At(thread), now);
   StartServer(At(thread), now);
 }
 
@@ -147,6 +163,7 @@ void RobotScheduler::Inherit(Thread child, Thread creator) {
       policy == SCHED_DEADLINE || (from.parameters.resets_on_fork && IsRealTime(policy));
   At(child).parameters = starts_anew ? SchedulingParameters{} : from.parameters;
   At(child).parameters.resets_on_fork = false;
+  DrawTurnLength(At(child), {});
   SetCores(child, from.allowed);
 }
 
@@ -304,7 +321,7 @@ void RobotScheduler::ChargeBudgetOf(Thread thread) {
 
 void RobotScheduler::WakeUp(Thread thread, VirtualTime now, bool is_release) {
   Entity& entity = At(thread);
-  entity.turn = {};
+  BeginTurn(entity, now);
   if (!HasDeadline(entity)) return;
   ChargeBudgetOf(thread);
   const bool has_budget = entity.parameters.policy == SCHED_DEADLINE;
@@ -334,10 +351,7 @@ void RobotScheduler::Stop(std::size_t core, VirtualDuration advanced, VirtualDur
   Entity* ran = Find(std::exchange(its.running, kNobody));
   if (ran == nullptr) return;  // it has ended
   ran->turn += used;
-  const auto quantum = QuantumOf(*ran);
-  if (!quantum.has_value() || ran->turn < *quantum) return;
-  ran->turn = {};
-  if (queue_.IsReady(ran->thread)) its.turn_over = ran->thread;
+  its.turn_over = HasUsedTurnUp(*ran) ? ran->thread : kNobody;
 }
 
 void RobotScheduler::SleptSince(Thread thread, VirtualDuration ran) {
@@ -345,7 +359,11 @@ void RobotScheduler::SleptSince(Thread thread, VirtualDuration ran) {
 }
 
 void RobotScheduler::EndTurn(std::size_t core) {
-  queue_.Rotate(std::exchange(cores_[core].turn_over, kNobody));
+  Entity* over = Find(cores_[core].turn_over);
+  if (over == nullptr || !HasUsedTurnUp(*over) || !queue_.IsReady(over->thread)) return;
+  if (!queue_.IsWantedByEqual(core, over->thread)) return;
+  queue_.Rotate(over->thread);
+  BeginTurn(*over, progress_[core]);
 }
 
 void RobotScheduler::ShareOut(const Core& core, VirtualDuration ran) {
@@ -402,8 +420,8 @@ VirtualDuration RobotScheduler::LatenessOf(Thread woken, VirtualTime sent, Virtu
 }
 
 VirtualTime RobotScheduler::TurnEnd(std::size_t core, const Entity& running) const {
-  const auto quantum = QuantumOf(running);
-  return quantum.has_value() ? progress_[core] + (*quantum - running.turn) : kNever;
+  if (!QuantumOf(running).has_value()) return kNever;
+  return progress_[core] + std::max(VirtualDuration(), running.turn_length - running.turn);
 }
 
 // How far a core may run if what others do at `input` could interrupt it. A program acts some
@@ -454,6 +472,10 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
   const bool takes_turns = QuantumOf(running).has_value();
   const VirtualTime turn_end = TurnEnd(core, running);
   const bool yields = queue_.YieldsTo(core, own);
+  // What it does to memory others see as it is when they come there themselves.
+  if (cores_.size() > 1 && furthest > now) {
+    furthest = now + lengths_.OfStep(core, now, furthest - now);
+  }
   VirtualTime limit = furthest, idle = HasDeadline(running) ? VirtualTime() : furthest;
   if (HasDeadline(running)) {
     limit = std::min(limit, AtMostNever(now, VirtualNs(running.server.budget_ns())));
@@ -483,7 +505,8 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
     if (glance.priority == own && takes_turns) {
       const VirtualTime due = std::min(wait.until, wait.next_expiry);
       if (due != kNever && yields && PreemptsOnWakeup(other, due - now)) {
-        if (MakesRoom(core, other, due)) limit = std::min(limit, std::max(due, now));
+        const VirtualTime until = due + lengths_.SlackOf(other.thread, due);
+        if (MakesRoom(core, other, due)) limit = std::min(limit, std::max(until, now));
       } else {
         limit = std::min(limit, std::max(due, turn_end));  // it has the next turn
       }

@@ -10,7 +10,8 @@
 // greatest of a thread's own and of those that are blocked on it (priority inheritance).
 //
 // Quantum. Equals take turns: of 1 ms, of 100 ms under SCHED_RR, without end under SCHED_FIFO and
-// where there is a deadline.
+// where there is a deadline; under set costs of lengths around these (turn_lengths.h). Whoever has
+// used its turn up while no equal wanted the core lets the next one go first that does.
 //
 // Wake-up preemption. As on Linux, a thread of SCHED_OTHER that time or input wakes goes before its
 // equals if it has used less than its fair share of late (share.h). A thread that its own robot's
@@ -38,6 +39,7 @@
 #include "coordinator/policy/run_queue.h"
 #include "coordinator/policy/scheduling_parameters.h"
 #include "coordinator/policy/share.h"
+#include "coordinator/policy/turn_lengths.h"
 #include "shm/time_kinds.h"
 
 namespace tcs {
@@ -83,8 +85,11 @@ class RobotScheduler {
   // `wait_of` is asked for threads that were added and not removed, by Assign, once for each
   // change. Where the world stands still while threads compute, nothing preempts on wake-up; and
   // since a wait's end is told by the process's own clock there, all are asked for each time.
-  RobotScheduler(std::size_t cores, bool preempts_on_wakeup, WaitOf wait_of)
+  // `turns_seed`: of the lengths of turns (turn_lengths.h); none: each is a whole quantum.
+  RobotScheduler(std::size_t cores, bool preempts_on_wakeup, WaitOf wait_of,
+                 std::optional<std::uint64_t> turns_seed = std::nullopt)
       : preempts_on_wakeup_(preempts_on_wakeup),
+        lengths_(turns_seed),
         wait_of_(std::move(wait_of)),
         queue_(cores),
         cores_(cores),
@@ -172,7 +177,8 @@ class RobotScheduler {
     Thread blocked_on = kNobody;
     VirtualDuration client_deadline;  // 0: none
     DeadlineServer server;            // while it has a deadline
-    VirtualDuration turn;             // had since its equals last had a turn
+    VirtualDuration turn;             // had since its equals last had a turn,
+    VirtualDuration turn_length;      // of so much
     Wait wait;                        // as last asked for
   };
   // Of an entity, at the same place.
@@ -190,7 +196,7 @@ class RobotScheduler {
     Priority priority = 0;       // of the running one when it began,
     std::size_t sharing = 0;     // and how many were ready at that
     VirtualTime charged_to;      // its budget
-    Thread turn_over = kNobody;  // goes behind its equals
+    Thread turn_over = kNobody;  // goes behind its equals, once one of them wants the core
     VirtualTime next_action = kNever;
   };
 
@@ -210,6 +216,9 @@ class RobotScheduler {
   static Priority OwnPriority(const Entity& entity);
   Priority PriorityIfWoken(const Entity& entity, VirtualTime now) const;
   static std::optional<VirtualDuration> QuantumOf(const Entity& entity);
+  void BeginTurn(Entity& entity, VirtualTime now);
+  void DrawTurnLength(Entity& entity, VirtualTime now) const;
+  static bool HasUsedTurnUp(const Entity& entity);
   void StartServer(Entity& entity, VirtualTime now);
   void ChargeBudget(Core& core, VirtualTime now);
   void ChargeBudgetOf(Thread thread);
@@ -229,6 +238,7 @@ class RobotScheduler {
   void ShareOut(const Core& core, VirtualDuration ran);
 
   bool preempts_on_wakeup_;
+  TurnLengths lengths_;
   WaitOf wait_of_;
   RunQueue queue_;
   std::vector<Core> cores_;

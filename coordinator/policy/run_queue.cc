@@ -124,11 +124,16 @@ void RunQueue::Displace(const std::vector<VirtualTime>& progress) {
 }
 
 bool RunQueue::HasWaitingEqual(std::size_t core) const {
-  const auto own = Find(turns_[core].thread);
+  return IsWantedByEqual(core, turns_[core].thread);
+}
+
+bool RunQueue::IsWantedByEqual(std::size_t core, Thread thread) const {
+  const auto own = Find(thread);
   if (own == ready_.end()) return false;
   return std::any_of(ready_.begin(), ready_.end(), [&](const Ready& ready) {
-    return ready.priority == own->priority && (ready.allowed >> (core & 63) & 1) != 0 &&
-           !HasTurn(ready.thread);
+    const bool has_core = turns_[core].thread == ready.thread;
+    return ready.thread != thread && ready.priority == own->priority &&
+           (ready.allowed >> (core & 63) & 1) != 0 && (has_core || !HasTurn(ready.thread));
   });
 }
 

@@ -59,6 +59,8 @@ class RunQueue {
   const Turn& Next(std::size_t core) const { return turns_[core]; }
   // Whether an equal of the core's thread waits for a core.
   bool HasWaitingEqual(std::size_t core) const;
+  // The same of an equal of that thread's, which is ready: that one may have the core already.
+  bool IsWantedByEqual(std::size_t core, Thread thread) const;
   // From when on somebody who precedes the core's thread wants a core; never: nobody.
   VirtualTime NextToPrecede(std::size_t core) const;
   // Whether a thread of that priority would take the core from its thread if it became ready now,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "coordinator/os/auxiliary_vector.h"
+#include "coordinator/os/host.h"
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/os/vdso_calls.h"
 #include "coordinator/scenario/elf_file.h"
@@ -40,9 +41,16 @@ void BarePrograms::Begins(pid_t pid) {
     return;
   }
   Process* process = run_.table.LivingProcess(pid);
-  if (process != nullptr) process->is_bare = true;
-  // That of the program before.
-  if (Task* first = run_.table.Living(pid); first != nullptr) first->end_word = 0;
+  if (process != nullptr) {
+    process->is_bare = true;
+  } else {
+    std::erase_if(unknown_, [](pid_t one) { return ThreadState(one) == 'X'; });
+    unknown_.insert(pid);
+  }
+  if (Task* first = run_.table.Living(pid); first != nullptr) {
+    first->end_word = 0;  // that of the program before
+    first->can_be_stopped = false;
+  }
   if (process != nullptr && !process->patch_vdso) return;
   if (MakeVdsoCall(pid)) return;
   run_.Warn(name +

@@ -6,6 +6,8 @@
 
 #include <sys/types.h>
 
+#include <set>
+
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {
@@ -16,9 +18,12 @@ class BarePrograms {
 
   // The process has executed a program, which is about to set itself up.
   void Begins(pid_t pid);
+  // It did so before it was known who it is. Once: it is known from now on.
+  bool TakeUnknown(pid_t pid) { return unknown_.erase(pid) != 0; }
 
  private:
   RunState& run_;
+  std::set<pid_t> unknown_;
 };
 
 }  // namespace tcs

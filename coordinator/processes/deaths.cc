@@ -15,6 +15,7 @@ void Deaths::End(Task& task, Moment moment) {
   Process& process = *task.process;
   usage_.Keep(task);
   task.cpu_clock_fd.Reset();
+  task.births.clear();
   if (task.slot >= 0) {
     std::int64_t& stalest_ns = run_.report.staleness_ns;
     stalest_ns = std::max(stalest_ns, SlotCheck::StalenessOf(task));

@@ -27,8 +27,8 @@ SpawnRequest RequestFor(const ClientSpec& client, const Robot& robot, const RunO
   request.command = client.command;
   request.working_directory = client.working_directory;
   request.environment = client.environment;
-  const bool counts_allocations =
-      options.counts_work || (is_fixed && !robot.is_ideal && client.fixed_allocation_cost.ns() > 0);
+  const bool are_free = client.fixed_allocation_cost == VirtualDuration();
+  const bool counts_allocations = options.counts_work || (is_fixed && !robot.is_ideal && !are_free);
   std::string& preload = request.environment["LD_PRELOAD"];
   preload = WithOurLibraries(
       client.environment.contains("LD_PRELOAD") ? preload : options.user_preload,
@@ -109,8 +109,7 @@ std::string Launches::Start(Launch& launch, VirtualTime at) {
   const ClientSpec& client = *launch.spec;
   SpawnRequest request = RequestFor(client, *launch.robot, run_.options);
   request.guarded = guarded_;
-  request.trapped_too = {
-      .executions = run_.SendsToGates(), .ends = run_.has_porters, .draws = run_.IsFixed()};
+  request.trapped_too = {.executions = run_.SendsToGates(), .draws = run_.IsFixed()};
   request.computer = network_.ComputerOf(launch.number);
   // Of those that ask their environment for it.
   if (request.computer != nullptr && getenv("HOSTNAME") != nullptr) {

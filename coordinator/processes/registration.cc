@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "coordinator/os/host.h"
 #include "coordinator/processes/attach_exchange.h"
+#include "coordinator/tasks/cpu_clock.h"
 
 namespace tcs {
 
@@ -32,7 +34,7 @@ bool Registration::RegistersLater(const shm::AttachHello& hello) const {
   }
   if (const Task* task = run_.table.Living(hello.tid); task != nullptr) {
     const bool waits_for_dispatch =
-        !run_.turn.IsOf(*task) && task->slot < 0 && Waker::IsRunnable(*task);
+        !run_.turn.IsOf(*task) && (task->slot < 0 || task->is_adopted) && Waker::IsRunnable(*task);
     return waits_for_dispatch && task->process->pid == hello.pid;
   }
   if (!run_.turn.lasts()) return false;
@@ -121,7 +123,8 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
     process.is_bare = false;
     starts_anew_(process, moment);
   }
-  PlaceAtGate(task, moment.at);
+  PlaceAtGate(task, moment.at, !std::exchange(task.is_adopted, false));
+  task.can_be_stopped = true;
   const int fds[shm::kMostAttachFds] = {memory_fd_, process.link->memory_fd(),
                                         process.link->notify_fd(), porters_end.get()};
   const std::size_t count = !wants_all ? 0 : porters_end ? 4 : 3;
@@ -129,25 +132,39 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   return true;
 }
 
-// The first thread has the slot that it had before it executed its program. No thread reads them.
 Task* Registration::Adopt(pid_t tid, Moment moment) {
   const pid_t pid = ProcessOfThread(tid);
   Process* known = run_.table.LivingProcess(pid);
-  Process* maker = known != nullptr ? known : run_.table.LivingProcess(ParentOf(pid));
-  if (maker == nullptr || !maker->is_bare) return nullptr;
-  Task& task = known != nullptr ? parts_.births.AddThread(*known, tid, moment.at)
-                                : parts_.births.AddChild(pid, maker->pid, *maker, moment.at);
+  const Process* maker = known != nullptr ? known : run_.table.LivingProcess(ParentOf(pid));
+  if (maker == nullptr || !(parts_.bare_programs.TakeUnknown(pid) || maker->is_bare)) {
+    return nullptr;
+  }
+  Task* task = run_.table.Living(tid);
+  if (task == nullptr && known != nullptr) task = &parts_.births.AddThread(*known, tid, moment.at);
+  if (task == nullptr) task = &parts_.births.AddChild(pid, maker->pid, *maker, moment.at);
+  task->process->is_bare = true;
+  GivePlace(*task, moment, 0, false);
+  if (task->slot < 0) return task;
+  parts_.cpu.active().HoldUnknown(*task);
+  task->parked = true;  // in its call
+  return task;
+}
+
+// No thread reads the slot, until it attaches. The first thread of a program that another one has
+// executed keeps the slot that it had.
+void Registration::GivePlace(Task& task, Moment moment, std::uint64_t end_word, bool is_newborn) {
   Process& process = *task.process;
-  process.is_bare = true;
   if (process.link == nullptr) Connect(process);
-  if (process.link == nullptr || (task.slot = process.link->TakeSlot(task)) < 0) return &task;
+  if (process.link == nullptr || (task.slot = process.link->TakeSlot(task)) < 0) return;
   task.slot_memory = &process.link->SlotAt(task.slot);
   task.metered.page = &task.slot_memory->clock;
-  TakeEndWord(task, 0);  // nobody tells it
-  task.executes = true;  // it has no handler by which it could be stopped
-  parts_.cpu.active().HoldUnknown(task);
-  PlaceAtGate(task, moment.at);
-  return &task;
+  TakeEndWord(task, end_word);
+  task.is_adopted = true;
+  task.can_be_stopped = !process.is_bare;
+  PlaceAtGate(task, moment.at, true);
+  task.parked = false;
+  // What it computes from here on is its own, before its first dispatch, too.
+  task.metered.host_origin_ns = is_newborn ? 0 : HostClockOf(task);
 }
 
 // The thread that registers: known already (a client, an announced child), a further thread of a
@@ -204,8 +221,8 @@ UniqueFd Registration::GivePorter(Process& process) {
   return process.porter == nullptr ? UniqueFd() : process.porter->TakeClientsEnd();
 }
 
-// Ready for its first dispatch; or for the first of another program.
-void Registration::PlaceAtGate(Task& task, VirtualTime at) {
+// Ready for its first dispatch; or for the first of another program. `is_first`: it had no place.
+void Registration::PlaceAtGate(Task& task, VirtualTime at, bool is_first) {
   shm::ThreadSlot& slot = SlotOf(task);
   slot.pid = task.process->pid;
   slot.tid = task.tid;
@@ -213,11 +230,12 @@ void Registration::PlaceAtGate(Task& task, VirtualTime at) {
   slot.robot = task.process->robot->number;
   slot.seed = run_.scenario.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
   // What it draws by trapped calls is a sequence of its own, which begins with the program, too.
-  if (task.tid == task.process->pid) task.process->draws.Seed(~slot.seed);
+  if (is_first && task.tid == task.process->pid) task.process->draws.Seed(~slot.seed);
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
   slot.signals.store(0);
   slot.open_calls.store(0);
+  slot.announces.store(0);
   slot.receipts.count.store(0);
   shm::NoteStarted(slot.receipts);
   slot.gate.store(shm::kGateClosed);

@@ -20,6 +20,7 @@
 
 #include "coordinator/calls/dds_gateway.h"
 #include "coordinator/host/host_cpu.h"
+#include "coordinator/processes/bare_programs.h"
 #include "coordinator/processes/births.h"
 #include "coordinator/processes/deaths.h"
 #include "coordinator/processes/registration_sockets.h"
@@ -40,6 +41,7 @@ class Registration {
     Reactor& reactor;
     HostCpu& cpu;
     RegistrationSockets& sockets;
+    BarePrograms& bare_programs;
     Births& births;
     Deaths& deaths;
     DdsGateway& dds;
@@ -56,10 +58,14 @@ class Registration {
   // A process that has connected says what it wants, at that descriptor. True if the running thread
   // has to be stopped.
   bool Heard(int fd, Moment moment);
-  // A thread that nobody knows has made a trapped call. If its program runs without the shim, or
-  // such a one has forked it, it will never register, and has its place from now on; null: it will,
-  // or is unmanaged.
+  // A thread that has no place yet has made a trapped call. If its program runs without the shim,
+  // or such a one has forked it, it will never register, and has its place from now on; null: it
+  // will, or is unmanaged.
   Task* Adopt(pid_t tid, Moment moment);
+  // The thread, which is known, has its place without registering; it may do so later. The kernel
+  // clears `end_word` when it ends (0: it is not known which). `is_newborn`: all that it has
+  // computed is its own.
+  void GivePlace(Task& task, Moment moment, std::uint64_t end_word, bool is_newborn);
   // The thread is dispatched, and registers now if it has wanted to before.
   void LetRegister(const Task& dispatched);
   // The turns of the threads that make others are over, and they have announced none of the threads
@@ -80,7 +86,7 @@ class Registration {
   void GiveDdsArea(int connection, pid_t pid);
   void Connect(Process& process);
   UniqueFd GivePorter(Process& process);
-  void PlaceAtGate(Task& task, VirtualTime at);
+  void PlaceAtGate(Task& task, VirtualTime at, bool is_first);
 
   const Parts parts_;
   RunState& run_;

@@ -22,8 +22,9 @@ void Tell(Task& task) {
 bool UndispatchedThreads::MayBeTold(const Task& task) const {
   if (run_.gates_only || !run_.IsFixed()) return false;
   const Process& process = *task.process;
-  const bool may_run = task.slot >= 0 && !task.is_ahead && !task.turns_beside &&
-                       Waker::IsRunnable(task) && !process.expelled && !process.dead;
+  const bool may_run = task.slot >= 0 && task.can_be_stopped && !task.is_ahead &&
+                       !task.turns_beside && Waker::IsRunnable(task) && !process.expelled &&
+                       !process.dead;
   return may_run && std::none_of(process.robot->tasks.begin(), process.robot->tasks.end(),
                                  [&process](const Task* other) {
                                    return other->process == &process && other->executes;

@@ -1,6 +1,6 @@
-// Children of a bare clone, or of the system call itself, that make no call that tcs knows: they
-// were not announced, and they do not register. Their parent learns of their end, and virtual time
-// waits while they run.
+// Children that share their parents' memory without being threads, as a leak checker's that stops
+// its parent; and those whose births were missed. They do not register. Their parent learns of
+// their end, and virtual time waits while they run.
 //
 // For the coordinator's thread only. Reads /proc, and has the reactor watch for their ends
 // (Tag::kUnknownChild, with their numbers).

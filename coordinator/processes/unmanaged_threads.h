@@ -1,6 +1,6 @@
-// Threads that tcs does not manage: made by a bare clone that was not announced, or by libraries
-// for themselves, or computing on after they have said that they end. They have the level of the
-// thread that made them, and virtual time waits for them. But one that computes for ever at that
+// Threads that tcs does not manage: of processes that share their parents' memory, or computing on
+// after they have said that they end. They have the level of the thread that made them, and virtual
+// time waits for them. But one that computes for ever at that
 // level would keep the CPU from the dispatched threads. So it loses its level, and virtual time
 // does not wait for it any longer.
 //

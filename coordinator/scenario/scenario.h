@@ -61,8 +61,8 @@ struct ClientSpec {
   std::optional<int> body;                         // index into world.bodies
   // What one intercepted call costs under --accounting fixed.
   VirtualDuration fixed_call_cost = VirtualDuration::Microseconds(1);
-  // The same for one memory allocation; 0: none.
-  VirtualDuration fixed_allocation_cost = VirtualDuration::Microseconds(2);
+  // The same for one memory allocation; 0: nothing; none: as shm/set_costs.h has it.
+  std::optional<VirtualDuration> fixed_allocation_cost;
   bool patch_vdso = true;  // reading the clock past the C library's symbols is virtual, too
   DdsTransport dds = DdsTransport::kEndpoints;
   // It is started then, and not before the client named `after` has ended, unless that is empty.

@@ -5,6 +5,7 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <utility>
 
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/tasks/task.h"
@@ -20,6 +21,9 @@ class Borrowed {
   Borrowed(const Task& task, int fd);
 
   int fd() const { return fd_.get(); }  // -1: there is none of that number
+
+  // From then on it is the caller's.
+  UniqueFd Take() { return std::move(fd_); }
 
   // False for files and folders, and for what is no descriptor.
   bool CanWait() const;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "coordinator/host/host_thread.h"
+#include "coordinator/os/clone_call.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/porter.h"
 #include "coordinator/os/trap.h"
@@ -22,6 +23,7 @@
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/queues/process_timers.h"
 #include "coordinator/tasks/ended_children.h"
+#include "coordinator/tasks/kept_files.h"
 #include "coordinator/tasks/process_link.h"
 #include "coordinator/tasks/program_clock.h"
 #include "coordinator/tasks/task_state.h"
@@ -44,7 +46,15 @@ enum class FollowUp {
   kKernelWaits,
   kObjects,
   kContinued,
-  kTerminals
+  kTerminals,
+  kBirths
+};
+
+// A thread or a process that a thread is making, or has made: it is looked for until it is known
+// (calls/spawns.h).
+struct Birth {
+  CloneCall call;
+  bool is_announced = false;  // the shim has made it, and tells of it next
 };
 
 struct ClientSpec;
@@ -66,12 +76,15 @@ struct Task : HostThread {
   VirtualDuration lead;              // of its process's clock when it last stopped
   std::int64_t children_looked = 0;  // of its process's children_changed when it last came to wait
   std::uint64_t fds_order = 0;       // of waiting for descriptors, over several attempts
+  std::optional<KeptFiles> kept;     // of its call, from a wait on that is over
   bool passes_on = false;            // others were passed over for it (one_waiter.cc)
   bool is_deliverer = false;         // of DDS messages, to its process
   std::optional<VirtualTime> messages_until;  // those due by then are for its next dispatch
   int trap_listener = -1;
-  std::uint64_t trap_id = 0;     // it stopped in a trapped call instead of at its gate
-  std::int64_t trap_result = 0;  // what that call is to return
+  std::uint64_t trap_id = 0;       // it stopped in a trapped call instead of at its gate
+  std::int64_t trap_result = 0;    // what that call is to return,
+  UniqueFd trap_file;              // or a descriptor of that, which lives on when it executes
+  bool trap_file_on_exec = false;  // another program
   // It had left the call, and may make it again: for the result that it has missed.
   bool answer_lost = false;
   std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
@@ -104,21 +117,28 @@ struct Task : HostThread {
   // coordinator (beside_cpu.h); and how far that one goes.
   int short_turns = 0, beside_after = 3;
   VirtualTime beside_horizon;
-  bool died_beside = false;      // with its process, in the turn that it has there
-  HostDuration ran;              // in its last turn
-  bool spins = false;            // computes without calls where computing takes no time
-  bool notified_early = false;   // has notified without being dispatched: answered at its dispatch
-  bool executes = false;         // another program, perhaps: it has no handlers there
-  bool has_signal = false;       // ours, to go to its gate, unless it has handled it by now
-  bool is_put_off = false;       // has notified, and is heard later (gates_only.cc),
-  bool is_call_put_off = false;  // or its trapped call has been received, and is taken later
-  shm::WorkCounts work{};        // so far,
+  bool died_beside = false;     // with its process, in the turn that it has there
+  HostDuration ran;             // in its last turn
+  bool spins = false;           // computes on and on on an ideal robot
+  bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
+  std::vector<Birth> births;    // that it has begun, the earliest first
+  bool in_vfork = false;        // it stands in the kernel until its child executes or ends
+  // It has its place, but does not know of it: it has made no call yet that the shim sees.
+  bool is_adopted = false;
+  std::uint64_t tls = 0;            // of one that was that at its birth; 0: unknown
+  bool can_be_stopped = true;       // it has the handler that brings a thread to its gate
+  bool executes = false;            // another program, perhaps: it has no handlers there
+  bool has_signal = false;          // ours, to go to its gate, unless it has handled it by now
+  bool is_put_off = false;          // has notified, and is heard later (gates_only.cc),
+  bool is_call_put_off = false;     // or its trapped call has been received, and is taken later
+  shm::WorkCounts work{};           // so far,
   std::uint64_t trapped_calls = 0;  // with those of its calls that the shim has not seen
   std::int64_t activations = 0;
-  Activation activation;          // this one, while it does not wait
-  bool is_further = false;        // not the first thread of a client
-  std::uint64_t posts_taken = 0;  // of its postbox (shm/postbox.h): what comes next
-  int row = 0;                    // in the schedule trace and the log of dispatches
+  Activation activation;           // this one, while it does not wait
+  bool is_further = false;         // not the first thread of a client
+  std::uint64_t posts_taken = 0;   // of its postbox (shm/postbox.h): what comes next
+  std::uint32_t changes_seen = 0;  // of its slot's descriptors_changed
+  int row = 0;                     // in the schedule trace and the log of dispatches
 
   void ComeTo(VirtualTime time) {
     TCS_CHECK(time >= reached);
@@ -161,13 +181,16 @@ struct Process {
   std::string name;
   int priority = 0;
   VirtualDuration deadline;  // its client's, under scheduler: edf; 0: none
-  VirtualDuration call_cost, allocation_cost;
+  VirtualDuration call_cost;
+  std::optional<VirtualDuration> allocation_cost;
   bool is_bare = false;  // its program runs without the shim (bare_programs.h)
   bool patch_vdso = false, dds_endpoints = false;
   shm::Draws draws;  // by trapped calls, where they repeat
   ProgramClock clock;
   ProcessTimers timers;
   std::map<std::int64_t, UniqueFd> timer_fds;  // of those that have one, by the timer's id
+  // Of those: no descriptor of the program's is left, but calls on them were waiting then.
+  std::vector<std::int64_t> closed_timers;
   // When one last ran out, as the virtual CPU's time, while nobody has come to wait since.
   VirtualTime expired = VirtualTime::Never();
   EndedThreads ended;  // and how many periodic expiries found nobody waiting
@@ -178,15 +201,17 @@ struct Process {
   bool stopped = false;               // by a signal, when last looked at
   // As long as its parent may not have been told.
   bool stop_is_news = false, continue_is_news = false;
-  std::uint32_t dds_number = 0;  // in dds::Hub; 0: it has not joined
-  bool stays_home = false;       // its threads do not compute ahead (computing_ahead.h)
-  bool dds_warned = false;       // a client: of what it, or a descendant, sends
-  bool has_erred = false;        // a client: it, or a descendant, was expelled
-  Task* deliverer = nullptr;     // its thread that takes what is for it
+  std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
+  bool pays_for_silence = false;  // a client: its threads compute for long without calls
+  bool stays_home = false;        // its threads do not compute ahead (computing_ahead.h)
+  bool dds_warned = false;        // a client: of what it, or a descendant, sends
+  bool has_erred = false;         // a client: it, or a descendant, was expelled
+  Task* deliverer = nullptr;      // its thread that takes what is for it
   bool dead = false;
   bool killed = false;                 // at the end of its grace
   bool expelled = false;               // killed, for what it has written into shared memory
   int threads = 1;                     // that ever attached
+  DescriptorChanges changes;           // of its descriptors
   bool has_unmanaged_threads = false;  // threads that never will
   bool is_client = false;              // named in the scenario, rather than a child of one
   int wait_status = 0;                 // once dead, of the coordinator's own children

@@ -18,6 +18,8 @@
 
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/queues/wait_queues.h"
+#include "coordinator/tasks/kept_files.h"
+#include "shm/layout.h"
 #include "shm/time_kinds.h"
 
 namespace tcs {
@@ -42,11 +44,15 @@ struct Signals {
 
 // One of these descriptors, which the coordinator has in its epoll set.
 struct Descriptors {
-  std::vector<UniqueFd> fds;  // copies of the client's
+  std::vector<UniqueFd> fds;       // copies of the client's,
+  std::vector<shm::WaitFd> asked;  // by which numbers, and for what, each was asked for
+  shm::KeepFiles keep = shm::KeepFiles::kNot;
+  DescriptorChanges since;    // of the process's when the wait began
   std::uint32_t number = 0;   // of the wait: tells its events from those of earlier waits
   std::uint64_t signals = 0;  // one of these ends the wait, too
   bool has_terminal = false;  // among the descriptors
   bool transfers = false;     // a trapped call that takes or gives data, and is to time out for it
+  std::int64_t done = 0;      // of what it transfers
   // Of one descriptor, an event of which is for one of those that wait for it (one_waiter.cc):
   bool takes = false;
   bool last_is_first = false;     // for the one that came last

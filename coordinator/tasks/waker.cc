@@ -22,6 +22,7 @@ void Waker::SetState(Task& task, TaskState state, bool goes_first) {
   if (const int more = (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
       more != 0) {
     unseen_ += more;
+    ++task.process->changes.turns;  // it goes on without one
     run_.header->kernel_waiters.store(static_cast<std::uint32_t>(unseen_));
   }
   task.state = state;
@@ -100,7 +101,7 @@ void Waker::Wait(Task& task, tcs::Wait wait) {
 }
 
 void Waker::Leave(Task& task) {
-  const std::optional<tcs::Wait> left = std::exchange(task.wait, std::nullopt);
+  std::optional<tcs::Wait> left = std::exchange(task.wait, std::nullopt);
   if (!left.has_value()) return;
   counts_.Left(*left);
   ShowObjectWaiters();

@@ -24,7 +24,7 @@ class Waker {
     // The wait has begun; a signal that ends it may be pending already.
     std::function<void(Task&)> began_by_signal;
     // The wait is over: its place in queues is given up.
-    std::function<void(Task&, const Wait&)> left;
+    std::function<void(Task&, tcs::Wait&)> left;
     // A wait in a trapped call ends, for that reason; `wait` is still there.
     std::function<void(Task&, shm::WakeReason)> ends_in_trapped_call;
     // A deliverer of DDS messages is held up by something else.

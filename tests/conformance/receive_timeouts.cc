@@ -1,4 +1,4 @@
-// SO_RCVTIMEO on all kinds of receiving.
+// SO_RCVTIMEO on all kinds of receiving, and of reading.
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <sys/uio.h>
@@ -31,6 +31,14 @@ int main(int argc, char** argv) {
   start = Now();
   EXPECT(recvmsg(fds[0], &message, 0) == -1 && errno == EAGAIN, "recvmsg");
   ExpectWaited(start, 40 * kMs, 2, "recvmsg");
+
+  start = Now();
+  EXPECT(read(fds[0], text, room) == -1 && errno == EAGAIN, "read: %s", strerror(errno));
+  ExpectWaited(start, 40 * kMs, 2, "read");
+
+  start = Now();
+  EXPECT(readv(fds[0], &iov, 1) == -1 && errno == EAGAIN, "readv: %s", strerror(errno));
+  ExpectWaited(start, 40 * kMs, 2, "readv");
 
   start = Now();
   EXPECT(recv(fds[0], text, room, MSG_DONTWAIT) == -1 && errno == EAGAIN, "MSG_DONTWAIT");

@@ -1,10 +1,11 @@
 // Allocates in each of the ways that there are, and spins on locks, and prints what the clock says
-// of each.
+// of each. Before each it waits.
 #include <malloc.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
+#include <unistd.h>
 
 namespace {
 
@@ -21,6 +22,7 @@ void* volatile g_block;
 
 template <class F>
 void Measure(const char* name, F allocate, int times = kTimes) {
+  usleep(1000);
   const long long start = Now();
   for (int i = 0; i < times; ++i) g_block = allocate();
   const long long passed = Now() - start;
@@ -49,6 +51,8 @@ int main() {
     return posix_memalign(&block, 64, 64) == 0 ? block : nullptr;
   });
   Measure("new", [] { return static_cast<void*>(new char[16]); });
+  Measure(
+      "many", [] { return malloc(16); }, 5 * kTimes);
   // The first thousand in a row cost nothing.
   static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
   Measure(

@@ -51,12 +51,23 @@ goes names child "${stood}sh waits for a signal, such as that of a child's end; 
 goes names left '^tcsim: sh has ended; the run goes on for the background processes that it has left: dash \(pid [0-9]+\).*; Ctrl-C' \
   "${unprivileged[@]}" "$tcsim" exec -- sh -c 'while :; do sleep 1; done & sleep 3'
 
-goes names clone '^tcsim: virtual time has .* it waits for threads or processes that tcs does not manage: python3[.0-9]* \(pid' \
-  "${unprivileged[@]}" "$tcsim" exec -- python3 -c '
-import ctypes, os, signal, time
-if ctypes.CDLL(None).syscall(56, signal.SIGCHLD, 0, 0, 0, 0) == 0:  # a bare clone
-    while True: pass
-os.wait()'
+cat >"$out/shares.c" <<'C'
+#define _GNU_SOURCE
+#include <sched.h>
+#include <signal.h>
+#include <sys/wait.h>
+static char stack[65536];
+static int Compute(void* none) {
+  for (;;) __asm__ volatile("" ::: "memory");
+}
+int main(void) {  /* a child that has the memory of its parent, and is no thread */
+  clone(Compute, stack + sizeof stack, CLONE_VM | SIGCHLD, 0);
+  return wait(0) > 0;
+}
+C
+cc -o "$out/shares" "$out/shares.c"
+goes names clone '^tcsim: virtual time has .* it waits for threads or processes that tcs does not manage: shares \(pid' \
+  "${unprivileged[@]}" "$tcsim" exec -- "$out/shares"
 
 # A call that only the kernel knows the end of (no world goes on meanwhile).
 printf '%s\n' 'duration: 3600s' "robots: {r: {clients: {held: {command: [cat, '$out/late']}}}}" \

@@ -18,7 +18,9 @@ class FixedMeterTest : public testing::Test {
     grant_.WriteTo(page_);
     page_.base_tsc = meter_.Begin(thread_, 0, true, false);
   }
-  ~FixedMeterTest() override { EXPECT_EQ(asked_, 0) << "a clock of the host has been asked"; }
+  ~FixedMeterTest() override {
+    EXPECT_TRUE(asked_ == 0 || thread_.pays_for_silence) << "a clock of the host has been asked";
+  }
 
   // The timer has come so often, and nobody has made a call.
   Meter::Found LookTimes(int times) {
@@ -30,6 +32,11 @@ class FixedMeterTest : public testing::Test {
     }
     return found;
   }
+  // The thread, which pays for it, has computed for so long by its CPU clock.
+  Meter::Found Compute(HostDuration computed, ProgramTime horizon = kFar) {
+    cpu_ns_ += computed.ns();
+    return meter_.Look(thread_, tsc_, horizon, clock_);
+  }
   std::int64_t Clock() { return ReadClockAt(page_, tsc_).time_ns; }
 
   shm::ClockPage page_{};
@@ -38,9 +45,10 @@ class FixedMeterTest : public testing::Test {
   FixedMeter meter_;
   std::uint64_t tsc_ = 0;
   int asked_ = 0;
+  std::int64_t cpu_ns_ = 7 * kMs;
   Meter::CpuClock clock_ = [this] {
     ++asked_;
-    return std::int64_t{0};
+    return cpu_ns_;
   };
 };
 
@@ -81,13 +89,63 @@ TEST_F(FixedMeterTest, AnyCallBreaksTheSilence) {
   EXPECT_EQ(LookTimes(1), Meter::Found::kIsSilent);
 }
 
-TEST_F(FixedMeterTest, WhoWasSilentIsLookedAtSoonAndOftenUntilItMakesACall) {
-  meter_.Begin(thread_, tsc_, false, true);
-  EXPECT_EQ(meter_.TimeToLook(thread_, tsc_, kFar), FixedMeter::kLookAtSilentEvery);
-  EXPECT_EQ(LookTimes(1), Meter::Found::kIsSilent);
+class PaysForSilence : public FixedMeterTest {
+ protected:
+  static constexpr std::int64_t kLookNs = FixedMeter::kLookAtSilentEvery.ns();
+  static constexpr std::int64_t kCostNs = FixedMeter::kSilentCost.ns();
+
+  PaysForSilence() {
+    thread_.pays_for_silence = true;
+    EXPECT_EQ(Compute({}), Meter::Found::kGoesOn);  // here it is seen first
+  }
+};
+
+TEST_F(PaysForSilence, AsMuchAsItComputes) {
+  EXPECT_EQ(Clock(), kStart);
+  for (int i = 1; i <= 5; ++i) {
+    EXPECT_EQ(Compute(HostNs(kLookNs)), Meter::Found::kGoesOn);
+    EXPECT_EQ(Clock(), kStart + i * kCostNs);
+  }
+}
+
+TEST_F(PaysForSilence, WhatIsLeftCountsForTheNextTime) {
+  Compute(HostNs(kLookNs - 1));
+  EXPECT_EQ(Clock(), kStart);
+  Compute(HostNs(kLookNs));
+  EXPECT_EQ(Clock(), kStart + kCostNs);
+  EXPECT_EQ(meter_.TimeToLook(thread_, tsc_, kFar), HostNs(50'000));  // not at once
+  Compute(HostNs(1));
+  EXPECT_EQ(Clock(), kStart + 2 * kCostNs);
+  EXPECT_EQ(meter_.TimeToLook(thread_, tsc_, kFar), HostNs(kLookNs));
+}
+
+TEST_F(PaysForSilence, OnceForEachLook) {
+  Compute(HostNs(100 * kLookNs));
+  EXPECT_EQ(Clock(), kStart + kCostNs);
+  Compute(HostNs(kLookNs - 1));
+  EXPECT_EQ(Clock(), kStart + kCostNs);
+}
+
+TEST_F(PaysForSilence, ACallBreaksIt) {
+  Compute(HostNs(kLookNs - 1));
   page_.executed_adjust += 1000;
-  EXPECT_EQ(LookTimes(1), Meter::Found::kGoesOn);
-  EXPECT_EQ(meter_.TimeToLook(thread_, tsc_, kFar), FixedMeter::kLookEvery);
+  Compute(HostNs(1));
+  EXPECT_EQ(Clock(), kStart + 1000);
+  Compute(HostNs(kLookNs));
+  EXPECT_EQ(Clock(), kStart + 1000 + kCostNs);
+}
+
+TEST_F(PaysForSilence, ATurnThatBeganInTheMidstOfItDoesNot) {
+  Compute(HostNs(kLookNs - 1));
+  meter_.Begin(thread_, tsc_, false, false);
+  Compute(HostNs(1));
+  EXPECT_EQ(Clock(), kStart + kCostNs);
+}
+
+TEST_F(PaysForSilence, ItComesToItsHorizon) {
+  const ProgramTime horizon = OwnTime(kStart + 2 * kCostNs);
+  EXPECT_EQ(Compute(HostNs(kLookNs), horizon), Meter::Found::kGoesOn);
+  EXPECT_EQ(Compute(HostNs(kLookNs), horizon), Meter::Found::kAtHorizon);
 }
 
 }  // namespace

@@ -43,6 +43,21 @@ TEST(OpenFiles, ACopyIsTheSameFileAndAnEqualOneIsNot) {
   }
 }
 
+TEST(OpenFiles, ANumberMeansTheFileUntilItIsClosedOrReplaced) {
+  const UniqueFd file(eventfd(0, 0)), other(eventfd(0, 0)), copy(dup(file.get()));
+  UniqueFd number(dup(file.get()));
+  const auto means = [&] { return Means(gettid(), number.get(), copy.get()); };
+  if (!means().has_value()) GTEST_SKIP() << "kcmp is refused here";
+  EXPECT_EQ(means(), true);
+  ASSERT_EQ(dup2(other.get(), number.get()), number.get());
+  EXPECT_EQ(means(), false);
+  ASSERT_EQ(dup2(file.get(), number.get()), number.get());
+  EXPECT_EQ(means(), true);
+  const int closed = number.get();
+  number.Reset();
+  EXPECT_EQ(Means(gettid(), closed, copy.get()), false);
+}
+
 TEST(OpenFiles, AnEntryIsAboutTheFileThatHadItsNumberThen) {
   const UniqueFd set(epoll_create1(0)), file(eventfd(0, 0)), other(eventfd(0, 0));
   const UniqueFd copy(dup(file.get()));

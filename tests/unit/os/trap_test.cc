@@ -1,6 +1,7 @@
 #include "coordinator/os/trap.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <pthread.h>
@@ -143,6 +144,37 @@ TEST(Trap, TheKernelEndsTheCallOfAMarkedThreadAsItsHandlerHasIt) {
     EXPECT_EQ(result, now.again ? kResult : -1) << now.flags << ", " << now.answer;
     EXPECT_EQ(error, now.again ? 0 : EINTR) << now.flags << ", " << now.answer;
   }
+}
+
+TEST(Trap, ACallIsAnsweredByAFileThatItsCallerThenHas) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const UniqueFd reads(ends[0]), writes(ends[1]);
+  std::atomic<long> first{-1}, second{-1};
+  {
+    TrappedThread thread([&] {
+      first = syscall(SYS_sched_yield);
+      second = syscall(SYS_sched_yield);
+    });
+    if (!thread.is_trapped()) GTEST_SKIP() << "no trap here";
+    const TrappedCall call = thread.Await(SYS_sched_yield);
+    // The thread shares this process's table.
+    const UniqueFd put(PutFileInto(call.listener, call.id, reads.get(), true));
+    EXPECT_TRUE(put);
+    EXPECT_EQ(fcntl(put.get(), F_GETFD), 0);
+    EXPECT_TRUE(AnswerTrappedByFile(call.listener, call.id, reads.get(), false));
+    const TrappedCall next = thread.Await(SYS_sched_yield);
+    EXPECT_FALSE(AnswerTrappedByFile(next.listener, next.id + 1, reads.get(), false));
+    EXPECT_TRUE(AnswerTrappedByFile(next.listener, next.id, -1, false)) << "by an error";
+  }
+  const UniqueFd copy(static_cast<int>(first.load()));
+  ASSERT_GE(copy.get(), 0);
+  EXPECT_EQ(fcntl(copy.get(), F_GETFD), FD_CLOEXEC);
+  char c = 'x', got = 0;
+  EXPECT_EQ(write(writes.get(), &c, 1), 1);
+  EXPECT_EQ(read(copy.get(), &got, 1), 1);
+  EXPECT_EQ(got, 'x');
+  EXPECT_EQ(second, -1);
 }
 
 TEST(Trap, OtherErrorsAreNoEndsBySignals) {

@@ -109,6 +109,23 @@ TEST(RobotScheduler, WhoPreemptsHasATurnOfItsOwn) {
   EXPECT_EQ(robot.Horizon(), robot.Progress() + kMilli / 2);
 }
 
+// Where nobody wanted the core meanwhile; a thread of the same robot has woken the other one.
+TEST(RobotScheduler, WhoHasUsedItsTurnUpLetsTheNextToWakeGoFirst) {
+  for (const std::int64_t ran : {kMilli - 1, kMilli, 100 * kMilli + kMilli / 2}) {
+    SimulatedRobot robot;
+    robot.AddReady(kOne);
+    robot.Add(kTwo);
+    robot.Sleep(kTwo, {.for_thread = true});
+    robot.Run(ran);
+    EXPECT_EQ(robot.Next(), kOne);
+    robot.Wake(kTwo, robot.Progress(), false);
+    robot.scheduler.EndTurn(0);
+    robot.scheduler.Assign(RobotTime(kNever));
+    EXPECT_EQ(robot.Next(), ran < kMilli ? kOne : kTwo) << ran;
+    EXPECT_EQ(robot.Horizon() - robot.Progress(), ran < kMilli ? 1 : kMilli) << ran;
+  }
+}
+
 TEST(RobotScheduler, EqualsShareACoreEqually) {
   SimulatedRobot robot;
   std::map<int, std::int64_t> had;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "coordinator/policy/robot_scheduler.h"
@@ -22,12 +23,15 @@ class SimulatedRobot {
   using Thread = RobotScheduler::Thread;
   using Wait = RobotScheduler::Wait;
 
-  explicit SimulatedRobot(std::size_t cores = 1, bool preempts_on_wakeup = true)
-      : scheduler(cores, preempts_on_wakeup,
-                  [this](Thread thread) {
-                    ++asked;
-                    return waits[thread];
-                  }),
+  explicit SimulatedRobot(std::size_t cores = 1, bool preempts_on_wakeup = true,
+                          std::optional<std::uint64_t> turns_seed = std::nullopt)
+      : scheduler(
+            cores, preempts_on_wakeup,
+            [this](Thread thread) {
+              ++asked;
+              return waits[thread];
+            },
+            turns_seed),
         progress_(cores, 0) {}
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;

@@ -77,7 +77,7 @@ TEST_F(LoadTest, TheRobotsAreAsWritten) {
   EXPECT_EQ(controller.body, 0);
   EXPECT_THAT(controller.environment, ElementsAre(Pair("MODE", "fast")));
   EXPECT_EQ(controller.fixed_call_cost, VirtualDuration::Microseconds(3));
-  EXPECT_EQ(controller.fixed_allocation_cost, VirtualDuration::Microseconds(2));
+  EXPECT_EQ(controller.fixed_allocation_cost, std::nullopt);
   const ClientSpec& planner = robot.clients[1];
   EXPECT_EQ(planner.name, "hunter/planner");
   EXPECT_EQ(planner.client_class, ClientClass::kBestEffort);

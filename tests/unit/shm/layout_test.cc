@@ -12,7 +12,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 23u);
+  EXPECT_EQ(kVersion, 24u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 5376u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -41,6 +41,8 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, waits_in_call), 1204u);
   EXPECT_EQ(offsetof(ThreadSlot, stopped_tsc), 1208u);
   EXPECT_EQ(offsetof(ThreadSlot, datagrams), 1216u);
+  EXPECT_EQ(offsetof(ThreadSlot, announces), 3272u);
+  EXPECT_EQ(offsetof(ThreadSlot, descriptors_changed), 3276u);
   EXPECT_EQ(offsetof(ThreadSlot, postbox), 3328u);
 }
 

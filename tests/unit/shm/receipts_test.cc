@@ -7,6 +7,17 @@ namespace {
 
 constexpr std::int64_t kWork = Receipts::kWorkNs;
 
+TEST(Receipts, AllocationsAreCountedFromTheEndOfAWaitOn) {
+  Receipts receipts{};
+  NoteStarted(receipts);
+  receipts.allocations = 7;
+  NoteReceived(receipts, 5 * kWork);
+  NoteSent(receipts);
+  EXPECT_EQ(receipts.allocations, 7u);
+  NoteWoken(receipts);
+  EXPECT_EQ(receipts.allocations, 0u);
+}
+
 TEST(Receipts, WhatAWaitHasEndedForIsTheActivationsOwn) {
   Receipts receipts{};
   NoteWoken(receipts);

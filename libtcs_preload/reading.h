@@ -1,0 +1,197 @@
+// How calls that read a descriptor look, wait and take: read, recv and their kin, and accept.
+//
+// Async-signal-safe.
+#pragma once
+
+#include <errno.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "libtcs_preload/at_once.h"
+#include "libtcs_preload/call_file.h"
+#include "libtcs_preload/datagram_notes.h"
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/fd_wait.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/local_sockets.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/receipts.h"
+#include "libtcs_preload/tcp.h"
+#include "libtcs_preload/terminals.h"
+#include "libtcs_preload/timer_fds.h"
+#include "libtcs_preload/virtual_clock.h"
+
+namespace tcs::preload {
+
+// Who waits to write may find room after a read. Asked only where that has the thread wait for its
+// next call (CountCall).
+inline void BeginTaking(GuestThread& t, int fd, bool socket) {
+  if (socket && g_header->gates_only != 0 && !ReadingMakesRoom(fd)) return;
+  BeginChange(t);
+}
+
+struct Reads {
+  bool dont_wait = false, socket = false, takes = true;
+  bool is_receive = false;  // recv and its kin
+};
+
+// The kernel has no form of the call that cannot wait. No result of a call.
+inline constexpr long kNoForm = -4096;
+
+// Of a call that reads a descriptor. `look`: what the kernel answers without waiting although
+// nothing is there, or -EAGAIN. `try_it`: what it answers in a form that cannot wait: -EAGAIN, or
+// kNoForm. `call`: as the program has made it.
+template <class Look, class Try, class Call>
+struct Forms {
+  Look look;
+  Try try_it;
+  Call call;
+};
+template <class Look, class Try, class Call>
+Forms(Look, Try, Call) -> Forms<Look, Try, Call>;
+
+// -1: of none.
+inline int TypeOfSocket(int fd) {
+  int type = 0;
+  socklen_t size = sizeof type;
+  const long result = RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, SO_TYPE, Arg(&type), Arg(&size));
+  return result == 0 ? type : -1;
+}
+
+// Of a datagram socket: what is there is taken at once, for nothing that still comes is before it;
+// and where nothing is there, and the call does not wait, that is so once nothing can come any
+// more. False where the call has to wait.
+template <class Look>
+bool ReadDatagram(GuestThread& t, int fd, Reads reads, Look look, ssize_t* result) {
+  const std::int64_t now = NowNs(t);
+  BeginTaking(t, fd, true);
+  long got = look(fd);
+  if (got == -EAGAIN) {
+    if (!reads.dont_wait && !IsNonBlocking(fd)) return false;
+    if (!IsSafeLook(t, fd, now)) {
+      HoldForRead(t);
+      BeginTaking(t, fd, true);
+      got = look(fd);
+    }
+  }
+  if (got > 0 && reads.takes) NoteReceived(t);
+  if (got >= 0 && reads.takes && NotesActivity()) NoteDatagramsReceived(t, fd, 1, true);
+  *result = ToErrno(got);
+  if (t.passes_on && !reads.dont_wait && !IsNonBlocking(fd)) {
+    const int error = errno;
+    PassOn(t);
+    errno = error;
+  }
+  return true;
+}
+
+inline ssize_t PassOnAfter(GuestThread& t, long result) {
+  PassOn(t);
+  return ToErrno(result);
+}
+
+// How a call takes what is there, and what the thread notes of it.
+template <class Look, class Try, class Call>
+class Taker {
+ public:
+  Taker(GuestThread& t, FdKind kind, bool takes, const Forms<Look, Try, Call>& forms)
+      : t_(t), kind_(kind), takes_(takes), acknowledges_(IsSocket()), forms_(forms) {}
+
+  bool IsSocket() const { return kind_ == FdKind::kSocket; }
+  bool HasForm() const { return has_form_; }
+  void UseNoForm() { has_form_ = false; }
+
+  // By the call itself, which may wait.
+  long Make(int fd) { return Take(fd, forms_.call); }
+  // -EAGAIN: nothing is there.
+  long TryIt(int fd) {
+    return Take(fd, [this](int from) {
+      const long result = has_form_ ? forms_.try_it(from) : kNoForm;
+      has_form_ = result != kNoForm;
+      if (has_form_) return result;
+      return PollNow(from, POLLIN) ? forms_.call(from) : -EAGAIN;
+    });
+  }
+
+ private:
+  template <class By>
+  long Take(int fd, By by) {
+    if (acknowledges_) acknowledges_ = AcknowledgeAtOnce(fd);
+    BeginTaking(t_, fd, IsSocket());
+    const long result = by(fd);
+    if (!takes_ || result < 0) return result;
+    if (result > 0 && IsSocket()) NoteReceived(t_);
+    if (result > 0 && !IsSocket()) NoteReceivedFrom(t_, fd, kind_ == FdKind::kOther);
+    if (IsSocket() && NotesActivity()) NoteDatagramsReceived(t_, fd, 1);
+    return result;
+  }
+
+  GuestThread& t_;
+  const FdKind kind_;
+  const bool takes_;
+  bool acknowledges_, has_form_ = true;
+  const Forms<Look, Try, Call>& forms_;
+};
+
+// Nothing is there.
+template <class Take>
+ssize_t WaitAndRead(GuestThread& t, int fd, Take& take) {
+  std::int64_t deadline = take.IsSocket() ? SocketDeadline(t, fd, SO_RCVTIMEO) : shm::kNeverNs;
+  // A terminal may be set to give up at a deadline, and then reads nothing.
+  const std::int64_t timeout = take.IsSocket() ? shm::kNeverNs : ReadTimeoutOf(fd);
+  if (timeout == 0) {
+    HoldForRead(t);
+    return ToErrno(take.Make(fd));
+  }
+  if (timeout != shm::kNeverNs) deadline = DeadlineAfter(t, timeout);
+  CallFile file(t, fd);
+  for (bool again = false;; again = true) {
+    const FdState state = AwaitEvent(file, POLLIN, deadline, again);
+    if (state == FdState::kFailed) return -1;
+    const long result = take.TryIt(file.fd());
+    if (result != -EAGAIN) return PassOnAfter(t, result);
+    if (state == FdState::kTimedOut) return timeout != shm::kNeverNs ? 0 : Fail(EAGAIN);
+  }
+}
+
+template <class Look, class Try, class Call>
+ssize_t ReadLike(int fd, Reads reads, Forms<Look, Try, Call> forms) {
+  const Entered t;
+  pthread_testcancel();
+  if (t == nullptr) return ToErrno(forms.call(fd));
+  ssize_t got = 0;
+  FdKind kind = FdKind::kSocket;
+  const int type = reads.is_receive ? TypeOfSocket(fd) : -1;
+  if (type == SOCK_DGRAM && ReadDatagram(*t, fd, reads, forms.look, &got)) return got;
+  if (type < 0 && !CanWait(fd, &kind)) return ToErrno(forms.call(fd));
+  Taker take(*t, kind, reads.takes, forms);
+  if (type == SOCK_DGRAM) return WaitAndRead(*t, fd, take);
+  if (reads.dont_wait || IsNonBlocking(fd)) {
+    HoldForReadFrom(*t, fd, reads.socket);
+    return ToErrno(take.Make(fd));
+  }
+  const auto wants_more = [&] { return take.IsSocket() && WantsMore(fd); };
+  const bool misses_nothing =
+      FindTimerFd(fd) == nullptr && NowNs(*t) <= t->slot->clock.read_safe_ns;
+  bool has_looked = false;
+  if (misses_nothing && !wants_more()) {
+    if (const long result = take.TryIt(fd); result != -EAGAIN) return PassOnAfter(*t, result);
+    has_looked = take.HasForm();
+  } else if (PollNow(fd, POLLIN)) {
+    if (!HoldForReadFrom(*t, fd, reads.socket)) return PassOnAfter(*t, take.Make(fd));
+    // While it held, somebody else may have taken what was there.
+    if (wants_more()) take.UseNoForm();
+    if (const long result = take.TryIt(fd); result != -EAGAIN) return PassOnAfter(*t, result);
+  } else if (wants_more()) {
+    take.UseNoForm();
+    has_looked = true;
+  }
+  if (!has_looked) {
+    if (const long answer = forms.look(fd); answer != -EAGAIN) return ToErrno(answer);
+  }
+  return WaitAndRead(*t, fd, take);
+}
+
+}  // namespace tcs::preload

@@ -1,0 +1,270 @@
+// Writing descriptors that can make a program wait, and connecting them.
+//
+// Kernel-carried data is there at once for anybody who looks. So a write waits until nobody can
+// look at an earlier virtual time.
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include "libtcs_preload/call_file.h"
+#include "libtcs_preload/datagram_notes.h"
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/fd_wait.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/keys.h"
+#include "libtcs_preload/local_sockets.h"
+#include "libtcs_preload/own_receivers.h"
+#include "libtcs_preload/pieces.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/signal_actions.h"
+#include "libtcs_preload/tcp.h"
+#include "libtcs_preload/terminals.h"
+#include "libtcs_preload/transfer.h"
+#include "libtcs_preload/user_memory.h"
+#include "libtcs_preload/virtual_clock.h"
+
+using namespace tcs::preload;
+
+namespace {
+
+// A UNIX stream connects once its listener has room. That cannot be polled; those who accept say
+// that there is room again.
+constexpr auto kBacklogs = tcs::shm::WaitKey::kBacklogs;
+
+// TCP would keep what MSG_MORE announces more for until a timer of the host's runs out.
+int WithoutMore(int fd, int flags) {
+  return (flags & MSG_MORE) != 0 && IsTcp(fd) ? flags & ~MSG_MORE : flags;
+}
+
+bool DontWait(int flags) { return (flags & MSG_DONTWAIT) != 0; }
+
+long WritePart(int fd, const iovec* iov, std::size_t count) {
+  return RawSyscall(SYS_pwritev2, fd, Arg(iov), static_cast<long>(count), -1, -1, RWF_NOWAIT);
+}
+
+// What the kernel would not find there, or not look at, is left for it to say.
+bool AreSound(const iovec* buffers, std::size_t count) {
+  if (count > kMostBuffers || !CanRead(buffers, count * sizeof *buffers)) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (static_cast<ssize_t>(buffers[i].iov_len) < 0) return false;
+  }
+  return true;
+}
+
+template <class Whole>
+ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
+  const Entered t;
+  pthread_testcancel();
+  if (t == nullptr || !CanWait(fd)) return ToErrno(whole(fd));
+  HoldForWrite(*t);
+  const bool at_once = !AreSound(iov, count) || IsNonBlocking(fd);
+  Rest rest(iov, at_once ? 0 : count);
+  if (NotesActivity()) NoteDatagram(*t, fd, nullptr, 0);
+  const long result = rest.bytes() == 0
+                          ? whole(fd)
+                          : TransferAll(*t, fd, POLLOUT, SO_SNDTIMEO, rest, WritePart, whole);
+  if (result < 0 && NotesActivity()) TakeBackDatagram(*t, fd, nullptr, 0);
+  if (result > 0 && AnybodyWaits() && IsTerminal(fd)) {
+    TellChanged(*t, tcs::shm::WaitKey::kTerminals, 0);
+  }
+  return ToErrno(result);
+}
+
+// What only the coordinator receives waits for nobody: it keeps it until its virtual time. Returns
+// where it receives that.
+int HoldToSend(GuestThread& t, int fd, const msghdr& message) {
+  const bool may_go_on = BeginWrite(t);
+  const bool reaches_safely = ReachesSafely(t, message);
+  const int receiver = ReceiverOf(fd, message.msg_name, message.msg_namelen);
+  if (!reaches_safely && !may_go_on && receiver == tcs::shm::kNoReceiver) {
+    Exchange(t, Request{.kind = tcs::shm::NotificationKind::kWrite});
+  }
+  return receiver;
+}
+
+// Control data travels with the first part.
+template <class Whole>
+ssize_t SendInParts(GuestThread* t, int fd, msghdr message, int flags, Whole whole) {
+  if (message.msg_iovlen > kMostBuffers || DontWait(flags) || IsNonBlocking(fd)) {
+    return ToErrno(whole(fd));
+  }
+  Rest rest(message.msg_iov, message.msg_iovlen);
+  return ToErrno(TransferAll(
+      *t, fd, POLLOUT, SO_SNDTIMEO, rest,
+      [&](int to, const iovec* part, std::size_t n) {
+        message.msg_iov = const_cast<iovec*>(part);
+        message.msg_iovlen = n;
+        const long sent = RawSyscall(SYS_sendmsg, to, Arg(&message), flags | MSG_DONTWAIT);
+        if (sent > 0) message.msg_controllen = 0;
+        return sent;
+      },
+      whole));
+}
+
+// `may_post`: false once the kernel has carried a message of this call. It is read before any that
+// is posted later in the call only where the coordinator wakes at once, which gates alone do not
+// see to.
+template <class Whole>
+ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* may_post,
+                Whole whole) {
+  if (t == nullptr) return ToErrno(whole(fd));
+  const bool was_in_call = t->in_call;
+  const int receiver = HoldToSend(*t, fd, message);
+  if (NotesActivity()) NoteDatagram(*t, fd, message.msg_name, message.msg_namelen);
+  long posted = 0;
+  ssize_t sent;
+  if (*may_post && Post(*t, fd, receiver, message, flags, &posted)) {
+    t->in_call = was_in_call;  // nobody has seen it yet
+    sent = ToErrno(posted);
+  } else {
+    *may_post = false;
+    // The coordinator would take it for something that happens when it finds it.
+    if (receiver != tcs::shm::kNoReceiver && IsBeside(*t)) {
+      Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kWrite});
+    }
+    sent = SendInParts(t, fd, message, flags, whole);
+  }
+  if (sent < 0 && NotesActivity()) {
+    const int error = errno;
+    TakeBackDatagram(*t, fd, message.msg_name, message.msg_namelen);
+    errno = error;
+  }
+  return sent;
+}
+
+}  // namespace
+
+TCS_EXPORT ssize_t write(int fd, const void* buffer, std::size_t size) {
+  const iovec iov{const_cast<void*>(buffer), size};
+  const std::size_t pieces = IsBeyondMemory(buffer, size) ? 0 : 1;  // to be moved in parts
+  return WriteAll(fd, &iov, pieces,
+                  [&](int to) { return RawSyscall(SYS_write, to, Arg(buffer), size); });
+}
+
+TCS_EXPORT ssize_t writev(int fd, const iovec* iov, int count) {
+  return WriteAll(fd, iov, static_cast<std::size_t>(count),
+                  [&](int to) { return RawSyscall(SYS_writev, to, Arg(iov), count); });
+}
+
+TCS_EXPORT ssize_t sendto(int fd, const void* buffer, std::size_t size, int flags,
+                          const sockaddr* to, socklen_t to_size) {
+  iovec iov = PieceOf(buffer, size);
+  msghdr message{};
+  message.msg_name = const_cast<sockaddr*>(to);
+  message.msg_namelen = to_size;
+  message.msg_iov = &iov;
+  message.msg_iovlen = 1;
+  const Entered t;
+  if (t != nullptr) flags = WithoutMore(fd, flags);
+  bool may_post = true;
+  return SendAll(t, fd, message, flags, &may_post, [&](int by) {
+    return RawSocketCall(SYS_sendto, by, Arg(buffer), size, flags, Arg(to), to_size);
+  });
+}
+
+TCS_EXPORT ssize_t send(int fd, const void* buffer, std::size_t size, int flags) {
+  return sendto(fd, buffer, size, flags, nullptr, 0);
+}
+
+TCS_EXPORT ssize_t sendmsg(int fd, const msghdr* message, int flags) {
+  msghdr copy{};
+  const Entered t(CopyIn(&copy, message));
+  if (t != nullptr) flags = WithoutMore(fd, flags);
+  bool may_post = true;
+  return SendAll(t, fd, copy, flags, &may_post,
+                 [&](int by) { return RawSyscall(SYS_sendmsg, by, Arg(message), flags); });
+}
+
+// What the socket has no room for is waited for, until all have been sent.
+TCS_EXPORT int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
+  const Entered t;
+  if (t != nullptr) flags = WithoutMore(fd, flags);
+  if (count == 0) return static_cast<int>(ToErrno(RawSyscall(SYS_sendmmsg, fd, 0, 0, flags)));
+  if (count > kMostBuffers) count = kMostBuffers;
+  bool may_post = true;
+  for (unsigned sent = 0; sent < count; ++sent) {
+    msghdr* message = &messages[sent].msg_hdr;
+    msghdr copy{};
+    const ssize_t n =
+        SendAll(CopyIn(&copy, message) ? t.thread() : nullptr, fd, copy, flags, &may_post,
+                [&](int by) { return RawSyscall(SYS_sendmsg, by, Arg(message), flags); });
+    const bool done = n >= 0 && CopyOut(&messages[sent].msg_len, static_cast<unsigned>(n));
+    if (n >= 0 && !done) errno = EFAULT;
+    if (!done) return sent > 0 ? static_cast<int>(sent) : -1;
+  }
+  return static_cast<int>(count);
+}
+
+namespace {
+
+long ConnectOnce(int fd, const sockaddr* address, socklen_t size) {
+  const long flags = RawSyscall(SYS_fcntl, fd, F_GETFL);
+  RawSyscall(SYS_fcntl, fd, F_SETFL, flags | O_NONBLOCK);
+  const long result = RawSyscall(SYS_connect, fd, Arg(address), size);
+  RawSyscall(SYS_fcntl, fd, F_SETFL, flags);
+  return result;
+}
+
+long ConnectLocally(GuestThread& t, int fd, const sockaddr* address, socklen_t size) {
+  const std::int64_t deadline = SocketDeadline(t, fd, SO_SNDTIMEO);
+  CallFile file(t, fd);
+  for (bool again = false;; again = true) {
+    const long result = ConnectOnce(file.fd(), address, size);
+    if (result != -EAGAIN || IsShutDown()) return result;
+    switch (file.WaitForKey(kBacklogs, deadline, again)) {
+      case WaitResult::kRetry:
+        break;
+      case WaitResult::kTimedOut:
+        return ConnectOnce(file.fd(), address, size);
+      case WaitResult::kInterrupted:
+        if (!RestartsAfterSignal()) return -EINTR;
+        break;
+    }
+  }
+}
+
+// The other end may be a while away.
+long ConnectFar(GuestThread& t, int fd, const sockaddr* address, socklen_t size) {
+  const long result = ConnectOnce(fd, address, size);
+  if (result != -EINPROGRESS) return result;
+  CallFile file(t, fd);
+  const int saved = errno;
+  const std::int64_t deadline = SocketDeadline(t, fd, SO_SNDTIMEO);
+  if (AwaitFd(file, POLLOUT, deadline) == FdState::kFailed) {
+    const int error = errno == EAGAIN ? EINPROGRESS : errno;
+    errno = saved;
+    return -error;
+  }
+  int error = 0;
+  socklen_t error_size = sizeof error;
+  RawSyscall(SYS_getsockopt, file.fd(), SOL_SOCKET, SO_ERROR, Arg(&error), Arg(&error_size));
+  return -error;
+}
+
+}  // namespace
+
+// Connecting is a write: it makes the listener's descriptor readable.
+TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
+  const Entered t;
+  if (t != nullptr) {
+    const bool may_go_on = BeginWrite(*t);
+    if (!ReachesSafely(*t, address, size) && !may_go_on) {
+      Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kWrite});
+    }
+  }
+  sa_family_t family = AF_UNSPEC;
+  if (t != nullptr && size >= sizeof family && CanRead(address, sizeof family)) {
+    family = address->sa_family;
+  }
+  if (family == AF_UNIX && !IsNonBlocking(fd)) {
+    return static_cast<int>(ToErrno(ConnectLocally(*t, fd, address, size)));
+  }
+  if ((family == AF_INET || family == AF_INET6) && !IsNonBlocking(fd)) {
+    return static_cast<int>(ToErrno(ConnectFar(*t, fd, address, size)));
+  }
+  return static_cast<int>(ToErrno(RawSyscall(SYS_connect, fd, Arg(address), size)));
+}
