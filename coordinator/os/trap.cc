@@ -13,6 +13,7 @@
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -218,6 +219,18 @@ int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
   // Without rights over others a filter must not outlive a set-uid exec.
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   return install(more);
+}
+
+int WhyNoTrap() {
+  const pid_t child = fork();
+  if (child == 0) {
+    const int error = InstallTrap({}) >= 0 ? 0 : errno;
+    // Nobody would answer the end of the process, which is trapped; that of its one thread is not.
+    syscall(SYS_exit, error, 0, 0, 0, 0, shm::kOwnCallMark);
+  }
+  int status = -1;
+  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return ECHILD;
+  return WEXITSTATUS(status);
 }
 
 bool IsExecution(const TrappedCall& call) {

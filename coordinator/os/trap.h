@@ -41,6 +41,9 @@ struct TrappedToo {
 // processes (protection.h). The descriptor at which the calls arrive; -1: errno is set.
 int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too = {});
 
+// 0, or the errno of an attempt to install it in a child of its own, for a filter stays for ever.
+int WhyNoTrap();
+
 // A signal can be kept from a thread in a trapped call until that is answered (Linux 5.19). Where
 // it cannot, a handler runs while the call waits, and the thread makes the call again.
 bool TrapsHoldSignals();
