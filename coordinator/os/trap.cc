@@ -307,6 +307,16 @@ bool HasAnswerToTake(int listener, std::uint64_t id) {
   return ioctl(listener, SECCOMP_IOCTL_NOTIF_ID_VALID, &id) == 0;
 }
 
+bool GiveDescriptor(const TrappedCall& call, int ours, int number) {
+  seccomp_notif_addfd add{};
+  add.id = call.id;
+  add.flags = SECCOMP_ADDFD_FLAG_SETFD;
+  add.srcfd = static_cast<std::uint32_t>(ours);
+  add.newfd = static_cast<std::uint32_t>(number);
+  add.newfd_flags = O_CLOEXEC;
+  return ioctl(call.listener, SECCOMP_IOCTL_NOTIF_ADDFD, &add) == number;
+}
+
 bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size) {
   const iovec local{to, size}, remote{reinterpret_cast<void*>(address), size};
   return process_vm_readv(pid, &local, 1, &remote, 1, 0) == static_cast<ssize_t>(size);

@@ -78,6 +78,10 @@ int PutFileInto(int listener, std::uint64_t id, int file, bool on_exec);
 // Lets the kernel carry it out.
 bool ContinueTrapped(int listener, std::uint64_t id);
 
+// While the call waits its process gets a copy of that descriptor of ours, under that number, which
+// names another one of its until then, and closed at an exec.
+bool GiveDescriptor(const TrappedCall& call, int ours, int number);
+
 // Results by which the kernel ends a call as it ends one of its own that a signal interrupts. It
 // knows them only in a thread that it has marked for a signal (IsMarkedForSignal, host.h); in any
 // other they would reach the program.
