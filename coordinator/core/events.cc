@@ -66,6 +66,9 @@ Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
     ChargeUndispatched(task);
     task.trap_id = 0;
     task.notified_early = true;
+  } else if (SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
+    // The kernel let it run a handler before its turn, which is to answer what it said before.
+    SlotOf(task).note.kind = shm::NotificationKind::kResumed;
   }
   return kConcernsAll;
 }
