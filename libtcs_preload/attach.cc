@@ -25,6 +25,32 @@ shm::ThreadSlot* g_slots = nullptr;
 
 constexpr int kWantedFd = 960;  // out of the way of programs that count descriptors from 0
 
+// A program may have used up all its descriptors, and make a thread or a process then, for which it
+// needs none. While this lives there are some more, where the process may raise its limit: those
+// that are kept stay beyond it.
+class MoreDescriptors {
+ public:
+  MoreDescriptors() {
+    RawSyscall(SYS_prlimit64, 0, RLIMIT_NOFILE, 0, Arg(&before_));
+    rlimit64 more{before_.rlim_cur + kMore, before_.rlim_max};
+    if (more.rlim_max < more.rlim_cur) more.rlim_max = more.rlim_cur;
+    has_more_ = before_.rlim_cur != RLIM64_INFINITY &&
+                RawSyscall(SYS_prlimit64, 0, RLIMIT_NOFILE, Arg(&more), 0) == 0;
+  }
+  ~MoreDescriptors() {
+    if (has_more_) RawSyscall(SYS_prlimit64, 0, RLIMIT_NOFILE, Arg(&before_), 0);
+  }
+  MoreDescriptors(const MoreDescriptors&) = delete;
+  MoreDescriptors& operator=(const MoreDescriptors&) = delete;
+
+  rlim64_t before() const { return before_.rlim_cur; }
+
+ private:
+  static constexpr rlim64_t kMore = 8;
+  rlimit64 before_{};
+  bool has_more_;
+};
+
 int Connect() {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -108,17 +134,15 @@ void MapSlots(int fd) {
   g_slots = reinterpret_cast<shm::ThreadSlot*>(at);
 }
 
-// Out of the way, as `kept`, which is the parent's before.
-void Keep(int fd, int& kept) {
+// Out of the way, as `kept`, which is the parent's before. `limit`: of descriptors.
+void Keep(int fd, int& kept, rlim64_t limit) {
   if (kept >= 0) {
     if (RawSyscall(SYS_dup3, fd, kept, O_CLOEXEC) == kept) {
       RawSyscall(SYS_close, fd);
       return;
     }
   }
-  rlimit64 limit{};
-  RawSyscall(SYS_prlimit64, 0, RLIMIT_NOFILE, 0, Arg(&limit));
-  const long room = static_cast<long>(limit.rlim_cur) - 8;
+  const long room = static_cast<long>(limit) - 8;
   const long moved =
       RawSyscall(SYS_fcntl, fd, F_DUPFD_CLOEXEC, room < kWantedFd ? room : kWantedFd);
   if (moved >= 0) {
@@ -134,6 +158,7 @@ void Attach(GuestThread& thread) {
   // What it has inherited, or an earlier attach has left, is this process's own only if one of its
   // threads has a place already.
   const bool is_first = g_process->mode != ProcessState::kAttached;
+  const MoreDescriptors more;
   const int socket = Connect();
   const Received received =
       Exchange(socket, is_first ? shm::AttachWants::kAll : shm::AttachWants::kSlot);
@@ -142,8 +167,8 @@ void Attach(GuestThread& thread) {
   if (is_first) {
     if (g_header == nullptr) MapRun(received.fds[0]);
     MapSlots(received.fds[1]);
-    Keep(received.fds[2], g_notify_fd);
-    if (received.fds[3] >= 0) Keep(received.fds[3], g_porter_fd);
+    Keep(received.fds[2], g_notify_fd, more.before());
+    if (received.fds[3] >= 0) Keep(received.fds[3], g_porter_fd, more.before());
     RawSyscall(SYS_close, received.fds[0]);
     RawSyscall(SYS_close, received.fds[1]);
   }

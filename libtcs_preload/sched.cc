@@ -1,11 +1,12 @@
 // Policies, priorities and affinities act on the robot's virtual scheduler, never on the host's.
 #include <errno.h>
-#include <linux/capability.h>
 #include <pthread.h>
 #include <sched.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
+
+#include <algorithm>
 
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
@@ -69,23 +70,6 @@ int GetAffinity(GuestThread& t, pid_t tid, std::size_t size, cpu_set_t* set) {
   memset(set, 0, size);
   memcpy(set, &cores, sizeof cores);
   return 0;
-}
-
-// Whether the kernel would let the caller have this nice value, which has no effect here and so is
-// 0 until then.
-bool MayHaveNice(int value) {
-  if (value >= 0) return true;
-  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
-  __user_cap_data_struct sets[_LINUX_CAPABILITY_U32S_3] = {};
-  if (RawSyscall(SYS_capget, Arg(&header), Arg(sets)) == 0 &&
-      (sets[0].effective >> CAP_SYS_NICE & 1) != 0) {
-    return true;
-  }
-  constexpr int kOfNiceZero = 20, kLeast = -20;
-  rlimit limit{};
-  RawSyscall(SYS_prlimit64, 0, RLIMIT_NICE, 0, Arg(&limit));
-  const int wanted = kOfNiceZero - (value < kLeast ? kLeast : value);
-  return limit.rlim_cur >= static_cast<rlim_t>(wanted);
 }
 
 int AsErrno(int error) { return error == 0 ? 0 : Fail(error); }
@@ -204,19 +188,21 @@ TCS_EXPORT int pthread_getaffinity_np(pthread_t thread, std::size_t size, cpu_se
   return tid < 0 ? ESRCH : GetAffinity(*t, tid, size, set);
 }
 
+// The kernel keeps nice values. They change no turn: threads of ordinary priority are equals.
 TCS_EXPORT int setpriority(__priority_which_t which, id_t who, int value) noexcept {
-  if (Enter() != nullptr) {
-    const long found = RawSyscall(SYS_getpriority, which, who);
-    if (found < 0) return Fail(static_cast<int>(-found));
-    return MayHaveNice(value) ? 0 : Fail(EACCES);
-  }
+  Enter();
   return static_cast<int>(ToErrno(RawSyscall(SYS_setpriority, which, who, value)));
 }
 
+// As the C library has it: the new value, which may be -1, and EPERM where the kernel says EACCES.
 TCS_EXPORT int nice(int increment) noexcept {
-  if (!MayHaveNice(increment)) return Fail(EPERM);
-  errno = 0;
-  return 0;
+  Enter();
+  constexpr long kOfNiceZero = 20, kLeast = -20, kMost = 19;
+  const long now = kOfNiceZero - RawSyscall(SYS_getpriority, PRIO_PROCESS, 0);
+  const long wanted = std::clamp(now + increment, kLeast, kMost);
+  const long error = RawSyscall(SYS_setpriority, PRIO_PROCESS, 0, wanted);
+  if (error < 0) return Fail(error == -EACCES ? EPERM : static_cast<int>(-error));
+  return static_cast<int>(wanted);
 }
 
 TCS_EXPORT int sched_yield(void) noexcept {

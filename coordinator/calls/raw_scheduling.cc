@@ -40,12 +40,13 @@ DeadlineParameters DeadlineOf(const Attributes& attributes) {
 
 }  // namespace
 
-std::int64_t RawScheduling::SetScheduling(Task& task, Task& of, const TrappedCall& call) {
+std::int64_t RawScheduling::SetScheduling(Task& task, Task* of, const TrappedCall& call) {
   const bool keeps = call.number == SYS_sched_setparam;
   sched_param param{};
   if (!Read(task, call.args[keeps ? 1 : 2], &param)) return -EFAULT;
   const std::int64_t policy = keeps ? shm::kKeepPolicy : static_cast<int>(call.args[1]);
-  return calls_.SetPriority(task, of, policy, param.sched_priority);
+  if (of == nullptr) return SchedulingCalls::ErrorForStranger(policy, param.sched_priority);
+  return calls_.SetPriority(task, *of, policy, param.sched_priority);
 }
 
 std::int64_t RawScheduling::SetAttributes(Task& task, Task& of, const TrappedCall& call) {
@@ -137,7 +138,7 @@ std::int64_t RawScheduling::Call(Task& task, const TrappedCall& call) {
   switch (call.number) {
     case SYS_sched_setscheduler:
     case SYS_sched_setparam:
-      return of == nullptr ? -ESRCH : SetScheduling(task, *of, call);
+      return SetScheduling(task, of, call);
     case SYS_sched_setattr:
       if (call.args[2] != 0) return -EINVAL;
       return of == nullptr ? -ESRCH : SetAttributes(task, *of, call);

@@ -22,7 +22,7 @@ class RawScheduling {
   static std::int64_t CoreOf(const Task& task, const TrappedCall& call);
 
  private:
-  std::int64_t SetScheduling(Task& task, Task& of, const TrappedCall& call);
+  std::int64_t SetScheduling(Task& task, Task* of, const TrappedCall& call);
   static std::int64_t GetScheduling(Task& task, Task& of, const TrappedCall& call);
   std::int64_t SetAttributes(Task& task, Task& of, const TrappedCall& call);
   static std::int64_t GetAttributes(Task& task, const Task& of, const TrappedCall& call);

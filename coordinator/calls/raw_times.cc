@@ -22,7 +22,9 @@ std::int64_t RawTimes::ReadClock(const Task& task, const TrappedCall& call) cons
   const std::int64_t now = OwnNow(task).ns();
   const std::int64_t real = now + run_.header->realtime_offset_ns;
   if (call.number == SYS_gettimeofday) {
-    return call.args[0] == 0 || Write(task, call.args[0], shm::ToTimeval(real)) ? 0 : -EFAULT;
+    constexpr struct timezone kNone {};
+    const bool has_time = call.args[0] == 0 || Write(task, call.args[0], shm::ToTimeval(real));
+    return has_time && (call.args[1] == 0 || Write(task, call.args[1], kNone)) ? 0 : -EFAULT;
   }
   if (call.number == SYS_time) {
     const time_t seconds = real / shm::kNsPerSecond;

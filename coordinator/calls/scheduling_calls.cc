@@ -90,12 +90,18 @@ std::int64_t SchedulingCalls::SetAffinity(const Task& asking, Task& task, std::u
   return 0;
 }
 
+std::int64_t SchedulingCalls::ErrorForStranger(std::int64_t policy, std::int64_t priority) {
+  const bool is_valid = policy == shm::kKeepPolicy || IsValid(Wanted({}, policy, priority));
+  return is_valid ? -ESRCH : -EINVAL;
+}
+
 void SchedulingCalls::Handle(Task& asking, const shm::Notification& note) {
   const auto tid = static_cast<pid_t>(note.args[0]);
   Task* task = tid == 0 ? &asking : run_.table.Named(*asking.process, tid);
   asking.reply[1] = 0;
   if (task == nullptr || task->process->robot != asking.process->robot) {
-    asking.reply[0] = -ESRCH;
+    const bool sets = note.kind == shm::NotificationKind::kPriority;
+    asking.reply[0] = sets ? ErrorForStranger(note.args[1], note.args[2]) : -ESRCH;
     return;
   }
   switch (note.kind) {

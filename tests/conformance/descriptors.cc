@@ -3,7 +3,11 @@
 #include <fcntl.h>
 #include <linux/close_range.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/timerfd.h>
+#include <sys/wait.h>
+
+#include <thread>
 
 #include "tests/conformance/conformance.h"
 
@@ -42,6 +46,41 @@ void TimerCopies() {
   }
 }
 
+void SleepShortly() {
+  const timespec shortly = ToTimespec(50 * kMs);
+  nanosleep(&shortly, nullptr);
+}
+
+// Threads and processes need no descriptor to be made.
+void NoneLeft() {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    rlimit limit;
+    getrlimit(RLIMIT_NOFILE, &limit);
+    const rlimit few{64, limit.rlim_max};
+    EXPECT(setrlimit(RLIMIT_NOFILE, &few) == 0, "setrlimit: %s", strerror(errno));
+    while (open("/dev/null", O_RDONLY) >= 0) {
+    }
+    EXPECT(errno == EMFILE, "open: %s", strerror(errno));
+    const std::int64_t start = Now();
+    const pid_t child = fork();
+    if (child == 0) {
+      SleepShortly();
+      _exit(7);
+    }
+    int status = 0;
+    EXPECT(waitpid(child, &status, 0) == child && WEXITSTATUS(status) == 7, "status %x", status);
+    ExpectSoonAfter(start, 50 * kMs, "a child");
+    std::thread(SleepShortly).join();
+    ExpectSoonAfter(start, 100 * kMs, "a thread");
+    getrlimit(RLIMIT_NOFILE, &limit);
+    EXPECT(limit.rlim_cur == 64, "the limit is %ld", static_cast<long>(limit.rlim_cur));
+    _exit(0);
+  }
+  int status = 0;
+  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "status %x", status);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -61,4 +100,5 @@ int main(int argc, char** argv) {
   for (int fd = 3; fd < 1024; ++fd) close(fd);
   EXPECT(close(500) == -1 && errno == EBADF, "close of nothing");
   ExpectSleeps("closing one by one");
+  NoneLeft();
 }

@@ -131,5 +131,9 @@ int main(int argc, char** argv) {
   EXPECT(sched_yield() == 0, "sched_yield");
   errno = 0;
   EXPECT(nice(0) >= -20 && errno == 0, "nice");
-  EXPECT(setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0)) == 0, "setpriority");
+  const int least = getpriority(PRIO_PROCESS, 0);
+  EXPECT(setpriority(PRIO_PROCESS, 0, least + 1) == 0 && getpriority(PRIO_PROCESS, 0) == least + 1,
+         "setpriority: %s", strerror(errno));
+  EXPECT(nice(2) == least + 3 && getpriority(PRIO_PROCESS, 0) == least + 3, "nice keeps nothing");
+  EXPECT(nice(100) == 19, "nice has a limit");
 }
