@@ -179,6 +179,10 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
       task.trap_continues = true;
       parts_.local_sockets.BindsUnseen(task.process->robot, call);
       break;
+    case SYS_open:
+    case SYS_openat:
+      parts_.computer_files.Open(task, call);
+      break;
     case SYS_pidfd_getfd:
       task.trap_continues = true;
       parts_.local_sockets.ReachesBy(task, call);

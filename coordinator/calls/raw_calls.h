@@ -8,6 +8,7 @@
 #include <functional>
 #include <utility>
 
+#include "coordinator/calls/computer_files.h"
 #include "coordinator/calls/futex_words.h"
 #include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/raw_child_waits.h"
@@ -37,6 +38,7 @@ class RawCalls {
     RawIpc& ipc;
     FutexWords& words;
     LocalSockets& local_sockets;
+    ComputerFiles& computer_files;
   };
 
   // `yield` lets equals have their turn (true: as Handle); `exit` ends the thread.

@@ -32,6 +32,8 @@ Task& Births::AddTask(Process& process, pid_t tid, VirtualTime at) {
   task.metered.speed = process.robot->speed;
   task.metered.is_ideal = process.robot->is_ideal;
   task.ComeTo(std::max(at, waker_.EarliestWake()));
+  task.started_at = task.reached;
+  if (tid == process.pid) process.started_at = task.reached;
   task.activation.release_ns = task.reached.ns();
   process.robot->tasks.push_back(&task);
   SchedulerOf(task).Add(task.order, process.priority);
@@ -69,7 +71,6 @@ Task& Births::AddClient(pid_t pid, Robot& robot, const ClientSpec& client, Virtu
   process.patch_vdso = client.patch_vdso;
   process.dds_endpoints = client.dds == DdsTransport::kEndpoints;
   Task& task = AddTask(process, pid, at);
-  process.started_at = task.reached;
   task.row = records_.AddRow(robot.name, client.name);
   return task;
 }

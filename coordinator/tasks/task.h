@@ -71,6 +71,7 @@ struct Task : HostThread {
   // What it has come to: the time of its last stop, or of what has made it ready since. Changed by
   // ComeTo only.
   VirtualTime reached;
+  VirtualTime started_at;
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
   std::optional<Wait> wait;                                   // while kWaiting
   VirtualDuration lead;              // of its process's clock when it last stopped
@@ -223,6 +224,7 @@ struct VirtualCpu {
   Robot* robot = nullptr;
   std::uint32_t core = 0;
   VirtualTime progress;  // changed by ComeTo only
+  VirtualDuration busy;  // how much was computed on it
   TemporalConsistency::Leaf leaf = -1;
   // Of an ideal robot's: where it has been standing, and since when.
   std::optional<VirtualTime> stands_at;
