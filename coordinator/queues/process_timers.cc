@@ -129,7 +129,10 @@ void ProcessTimers::Set(Id id, Setting setting, VirtualDuration lead) {
   Timer* timer = Find(id);
   if (timer == nullptr) return;
   timer->setting.next_ns = std::max<std::int64_t>(0, setting.next_ns);
-  timer->setting.interval_ns = std::max<std::int64_t>(0, setting.interval_ns);
+  // The kernel forgets the interval of one that is disarmed, but for the timers of descriptors and
+  // those of setitimer on processor time.
+  const bool forgets = setting.next_ns <= 0 && (timer->kind.is_posix != 0 || id == ITIMER_REAL);
+  timer->setting.interval_ns = forgets ? 0 : std::max<std::int64_t>(0, setting.interval_ns);
   timer->lead = lead;
   timer->is_signal_underway = timer->was_seen_accepted = timer->rests = false;
   timer->overruns = timer->accepted_overruns = 0;
