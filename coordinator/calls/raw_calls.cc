@@ -204,6 +204,7 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
       task.trap_result = parts_.words.WaitForAny(task, call);
       break;
     default:  // SYS_io_uring_setup
+      task.process->asked_for_io_uring = true;
       task.trap_result = -ENOSYS;
   }
   return task.Awaits<awaited::Descriptors>() != nullptr;

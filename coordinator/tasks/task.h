@@ -216,6 +216,7 @@ struct Process {
   bool has_unmanaged_threads = false;  // threads that never will
   bool is_client = false;              // named in the scenario, rather than a child of one
   int wait_status = 0;                 // once dead, of the coordinator's own children
+  bool asked_for_io_uring = false;     // which it was refused
   VirtualTime started_at;
   std::optional<VirtualTime> ended_at;
 };
