@@ -179,6 +179,11 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
       task.trap_continues = true;
       parts_.local_sockets.BindsUnseen(task.process->robot, call);
       break;
+    case SYS_setrlimit:
+    case SYS_getrlimit:
+    case SYS_prlimit64:
+      task.trap_result = parts_.limits.Call(task, call);
+      break;
     case SYS_open:
     case SYS_openat:
       parts_.computer_files.Open(task, call);

@@ -13,6 +13,7 @@
 #include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/raw_child_waits.h"
 #include "coordinator/calls/raw_ipc.h"
+#include "coordinator/calls/raw_limits.h"
 #include "coordinator/calls/raw_polls.h"
 #include "coordinator/calls/raw_scheduling.h"
 #include "coordinator/calls/raw_timers.h"
@@ -39,6 +40,7 @@ class RawCalls {
     FutexWords& words;
     LocalSockets& local_sockets;
     ComputerFiles& computer_files;
+    RawLimits& limits;
   };
 
   // `yield` lets equals have their turn (true: as Handle); `exit` ends the thread.

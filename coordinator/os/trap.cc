@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <time.h>
@@ -145,6 +146,16 @@ std::vector<sock_filter> NativeProgram(const Numbers& numbers) {
       JumpIfEqual(shm::kOwnCallMark, 0, 1),
       allow,
       trap,
+      // Limits of processor time only: what was charged is to be limited.
+      JumpIfEqual(SYS_prlimit64, 0, 2),
+      LoadArgument(1),
+      {BPF_JMP | BPF_JA, 0, 0, 3},
+      JumpIfEqual(SYS_setrlimit, 1, 0),
+      JumpIfEqual(SYS_getrlimit, 0, 4),
+      LoadArgument(0),
+      JumpIfEqual(RLIMIT_CPU, 0, 1),
+      trap,
+      allow,
       // Files that are opened for reading only: it may be one of the robot's computer.
       JumpIfEqual(SYS_open, 0, 2),
       LoadArgument(1),

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "coordinator/os/host.h"
+#include "coordinator/processes/cpu_limit.h"
 
 namespace tcs {
 
@@ -87,6 +88,7 @@ Task& Births::AddChild(pid_t pid, pid_t parent, const Process& maker, VirtualTim
   // That of the gateway speaks to programs by sockets.
   process.dds_endpoints = maker.dds_endpoints && !maker.robot->is_ours;
   process.clock = maker.clock.Fork();
+  InheritCpuLimit(maker, process);
   Task& task = AddTask(process, pid, at);
   task.is_further = true;
   task.row = records_.AddRow(process.robot->name, NumberedName(task));

@@ -209,14 +209,15 @@ struct Process {
   bool has_erred = false;         // a client: it, or a descendant, was expelled
   Task* deliverer = nullptr;      // its thread that takes what is for it
   bool dead = false;
-  bool killed = false;                 // at the end of its grace
-  bool expelled = false;               // killed, for what it has written into shared memory
-  int threads = 1;                     // that ever attached
-  DescriptorChanges changes;           // of its descriptors
-  bool has_unmanaged_threads = false;  // threads that never will
-  bool is_client = false;              // named in the scenario, rather than a child of one
-  int wait_status = 0;                 // once dead, of the coordinator's own children
-  bool asked_for_io_uring = false;     // which it was refused
+  bool killed = false;                      // at the end of its grace
+  bool expelled = false;                    // killed, for what it has written into shared memory
+  int threads = 1;                          // that ever attached
+  DescriptorChanges changes;                // of its descriptors
+  bool has_unmanaged_threads = false;       // threads that never will
+  bool is_client = false;                   // named in the scenario, rather than a child of one
+  int wait_status = 0;                      // once dead, of the coordinator's own children
+  std::optional<std::uint64_t> most_cpu_s;  // what it may compute at most (cpu_limit.h)
+  bool asked_for_io_uring = false;          // which it was refused
   VirtualTime started_at;
   std::optional<VirtualTime> ended_at;
 };
