@@ -12,7 +12,8 @@ bool MayBeOfComputer(int folder, const char* path, int flags);
 long OpenOfComputer(int folder, const char* path, int flags);
 
 // What is in the folders of the processors: a robot may have more of them than its host. The same
-// as OpenOfComputer, for who asks about a name there; negative for other names, too.
+// as OpenOfComputer, for who asks about a name there; negative for other names, too. The name can
+// be read.
 long OpenProcessorFolder(const char* path, int flags);
 
 // The program has gone back to the beginning of what the descriptor reads: what it finds there is

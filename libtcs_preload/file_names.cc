@@ -19,12 +19,15 @@ namespace {
 // The two structures are one here, and the kernel's.
 static_assert(sizeof(struct stat) == sizeof(struct stat64));
 
-// `ask(fd)` of what is in the folders of the robot's processors; `otherwise()` of all else.
-template <class Ask, class Otherwise>
-long OfProcessors(const char* path, bool follows, Ask ask, Otherwise otherwise) {
+// What the kernel says; of what is in the folders of the robot's processors, `ask(fd)`. The kernel
+// comes first, for it knows whether the name can be read at all.
+template <class Ask, class Kernel>
+long OfProcessors(const char* path, bool follows, Ask ask, Kernel kernel) {
+  const long found = kernel();
+  if (found == -EFAULT) return found;
   const long fd = OpenProcessorFolder(path, follows ? 0 : O_NOFOLLOW);
   if (fd == -ENOENT || fd == -ENOTDIR) return fd;
-  if (fd < 0) return otherwise();
+  if (fd < 0) return found;
   const long result = ask(fd);
   RawSyscall(SYS_close, fd);
   return result;
@@ -40,14 +43,14 @@ int StatAt(int folder, const char* path, void* status, int flags) {
 }
 
 int AccessAt(int folder, const char* path, int mode, int flags) {
-  const auto otherwise = [&]() -> long {
+  const auto kernel = [&]() -> long {
     const int result = TCS_REAL(faccessat)(folder, FileOf(path), mode, flags);
     return result == 0 ? 0 : -errno;
   };
   return static_cast<int>(ToErrno(OfProcessors(
       path, Follows(flags),
       [&](long fd) { return RawSyscall(SYS_faccessat2, fd, Arg(""), mode, AT_EMPTY_PATH); },
-      otherwise)));
+      kernel)));
 }
 
 // What programs call in their place that were built with glibc up to 2.32, whose header has such a
