@@ -20,8 +20,9 @@ namespace {
 
 // A thread may wait in a call on what is about to be closed or replaced.
 void NoteChange() {
-  if (t_thread.slot == nullptr) return;
-  std::atomic<std::uint32_t>& changed = t_thread.slot->descriptors_changed;
+  const GuestThread* t = IfAttached();
+  if (t == nullptr) return;
+  std::atomic<std::uint32_t>& changed = t->slot->descriptors_changed;
   changed.store(changed.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 

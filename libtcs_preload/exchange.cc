@@ -249,6 +249,7 @@ Ended EndWait(GuestThread& thread) {
   Notify(thread, reading);
   none.Allow(0);
   WaitAtGate(slot, nullptr, charged);
+  if (slot.note.kind == NotificationKind::kResumed) return Ended::kByOther;
   return slot.reply[0] != 0 ? Ended::kWait : Ended::kNothing;
 }
 

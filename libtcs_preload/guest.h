@@ -68,12 +68,17 @@ extern int g_porter_fd;  // the porter's connection, likewise; -1: there are non
 // Attaches the process or thread if it is not yet; null: let the call through.
 GuestThread* CurrentSlow();
 
+// The calling thread if it is attached, else null; attaches nobody. A child by fork or by a bare
+// clone still has its parent's slot in `t_thread`, but not that slot's memory.
+inline GuestThread* IfAttached() {
+  const bool is_attached = g_process->mode == ProcessState::kAttached && t_thread.slot != nullptr;
+  return __builtin_expect(is_attached, 1) ? &t_thread : nullptr;
+}
+
 // The calling thread, attached; null where calls are to be let through.
 inline GuestThread* Current() {
-  if (__builtin_expect(g_process->mode == ProcessState::kAttached && t_thread.slot != nullptr, 1)) {
-    return &t_thread;
-  }
-  return CurrentSlow();
+  GuestThread* t = IfAttached();
+  return t != nullptr ? t : CurrentSlow();
 }
 
 // Charges a set cost: of a call, or of an allocation.

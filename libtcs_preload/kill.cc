@@ -44,9 +44,8 @@ auto SendSignal(pid_t receiver, int signal, Call call) {
 // who sees to that (gates_only.cc). The C library's calls are handed over themselves.
 template <class... Args>
 long SendRaw(long number, Args... args) {
-  const bool tells = g_header != nullptr && g_header->gates_only != 0 && t_thread.slot != nullptr &&
-                     t_thread.slot->signals.load() != 0;
-  if (tells) AwaitTurn(t_thread);
+  GuestThread* t = IfAttached();
+  if (t != nullptr && g_header->gates_only != 0 && t->slot->signals.load() != 0) AwaitTurn(*t);
   return RawSyscall(number, args...);
 }
 

@@ -48,12 +48,13 @@ void StopHere(int signal, siginfo_t* info, void* context) {
   }
   if (t_thread.attaching) return;
   // The thread, or its process, was made past the shim and computes: it goes to the gate by
-  // attaching. Of a child by fork its parent's thread still stands here.
-  if (g_process->mode != ProcessState::kAttached || t_thread.slot == nullptr) {
+  // attaching.
+  GuestThread* const attached = IfAttached();
+  if (attached == nullptr) {
     if (!IsShutDown()) Current();
     return;
   }
-  GuestThread& thread = t_thread;
+  GuestThread& thread = *attached;
   if (IsShutDown()) return;
   if (!IsForThisDispatch(*thread.slot, *info)) return;
   if (IsAtGate(thread)) {

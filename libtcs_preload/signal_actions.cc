@@ -51,9 +51,9 @@ std::atomic<std::uint64_t> g_interrupting;  // siginterrupt; bit 0 is signal 1
 // A call that was handed over, and of which the coordinator has not said that it waits, has only
 // not been answered yet.
 bool HasWaited() {
-  const bool is_attached =
-      g_process->mode == ProcessState::kAttached && !t_thread.attaching && t_thread.slot != nullptr;
-  return !is_attached || IsShutDown() || t_thread.slot->waits_in_call.exchange(0) != 0;
+  const GuestThread* t = IfAttached();
+  if (t == nullptr || t->attaching || IsShutDown()) return true;
+  return t->slot->waits_in_call.exchange(0) != 0;
 }
 
 // What the kernel runs for every handler of the program's.

@@ -9,6 +9,7 @@
 #include "libtcs_preload/call_file.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/kernel_wait.h"
 
 namespace tcs::preload {
 
@@ -77,7 +78,11 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
     }
     const bool can_part = n != -EOPNOTSUPP || done > 0;
     if (n != -EAGAIN && can_part) return done > 0 ? done : n;
-    if ((!can_part || done == 0) && PollNow(file.fd(), events)) return whole(file.fd());
+    if ((!can_part || done == 0) && PollNow(file.fd(), events)) {
+      if (!can_part) return whole(file.fd());
+      // It waits for what cannot be polled: room in the queue of the socket that it sends to.
+      return WaitInKernel(thread, true, [&] { return whole(file.fd()); });
+    }
     if (is_last) return done > 0 ? done : -EAGAIN;
     if (deadline_ns < 0) {
       deadline_ns =

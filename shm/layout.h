@@ -72,10 +72,12 @@ enum class NotificationKind : std::uint32_t {
                       // the virtual scheduler; reply[0]: 0, or negative for an errno.
   // Policies may have SCHED_RESET_ON_FORK in them, or be kKeepPolicy. args[3]: 1
   // only to ask whether the caller may
-  kInterrupted = 14,  // a signal handler wants to run while the thread waits: end the wait
+  kInterrupted = 14,  // a signal handler wants to run while the thread waits: end the wait; where
+                      // the wait is over, and the thread to have a turn, the kind becomes kResumed
   kMadeThread = 15,   // args[0]: pthread_t of a new thread that will attach; args[1..2] as
                       // kPriority's if args[1] >= 0, args[3] as kAffinity's (0: any)
-  kResumed = 17,      // a call unknown to the shim has returned (never sent by the shim itself)
+  // A call unknown to the shim has returned; or see kInterrupted. Never sent by the shim itself.
+  kResumed = 17,
   kPriorityGet = 18,  // args[0]: tid, 0 for the own; reply[0]: policy, or negative for an errno;
                       // reply[1]: priority
   kAffinity = 19,  // args[0]: tid, 0 for the own; args[1]: the robot's cores that it may use, bit 0

@@ -67,7 +67,7 @@ const Task* FutexWords::EndsAt(const Process& process, std::uint64_t address,
     if (task.process != &process) continue;
     if (task.end_word == address) return &task;
     const bool lives = task.state != TaskState::kDead;
-    if (task.tid == named && (found == nullptr || lives)) found = &task;
+    if (task.own_tid == named && (found == nullptr || lives)) found = &task;
   }
   return found;
 }
@@ -103,7 +103,7 @@ std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) 
   table_.Wait(task.order, KeyFor(task, call, call.args[0]), command == FUTEX_WAIT ? kAnyBit : bits);
   // The owner of a robust lock that processes share may be in another one.
   const auto holds = static_cast<pid_t>(value & FUTEX_TID_MASK);
-  if (joined == nullptr) joined = run_.table.Living(holds);
+  if (joined == nullptr) joined = run_.table.Named(*task.process, holds);
   const pid_t names = joined == nullptr ? 0 : joined->tid;
   Enter(task, {.names_tid = names, .address = call.args[0], .holds = holds}, deadline);
   return 0;

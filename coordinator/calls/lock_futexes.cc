@@ -22,15 +22,15 @@ std::int64_t LockFutexes::Lock(Task& task, const TrappedCall& call, int command)
   const auto owner_tid = static_cast<pid_t>(value & kOwner);
   // A signal may have ended its wait when it already had the lock; then the kernel calls again.
   const bool has_it_now = std::exchange(task.handed_lock, 0) == call.args[0];
-  if (owner_tid == task.tid) return has_it_now ? 0 : -EDEADLK;
+  if (owner_tid == task.own_tid) return has_it_now ? 0 : -EDEADLK;
   const FutexKey key = FutexWords::KeyFor(task, call, call.args[0]);
   if (owner_tid == 0) {
     const bool others = words_.MostUrgent(key, FUTEX_BITSET_MATCH_ANY) != nullptr;
-    value = (value & kDied) | static_cast<std::uint32_t>(task.tid) | (others ? kWaiters : 0);
+    value = (value & kDied) | static_cast<std::uint32_t>(task.own_tid) | (others ? kWaiters : 0);
     return WriteMemory(pid, call.args[0], &value, sizeof value) ? 0 : -EFAULT;
   }
   if (command == FUTEX_TRYLOCK_PI) return -EAGAIN;
-  Task* owner = run_.table.Living(owner_tid);
+  Task* owner = run_.table.Named(*task.process, owner_tid);
   if (owner == nullptr) return -ESRCH;
   timespec timeout{};
   if (call.args[3] != 0 && !ReadMemory(pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;
@@ -57,7 +57,7 @@ bool LockFutexes::HandOn(const FutexKey& key, std::uint32_t flags, Moment moment
   words_.table().Leave(next->order);
   const bool others = words_.MostUrgent(key, FUTEX_BITSET_MATCH_ANY) != nullptr;
   const std::uint32_t value =
-      static_cast<std::uint32_t>(next->tid) | flags | (others ? kWaiters : 0);
+      static_cast<std::uint32_t>(next->own_tid) | flags | (others ? kWaiters : 0);
   WriteMemory(next->process->pid, wait.lock_address, &value, sizeof value);
   for (const FutexTable::Thread waiter : words_.table().WaitersAt(key)) {
     PriorityInheritance::BlockOn(run_.table.At(waiter), next);
@@ -72,7 +72,7 @@ std::int64_t LockFutexes::Unlock(Task& task, const TrappedCall& call) {
   std::uint32_t value = 0;
   task.handed_lock = 0;
   if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
-  if (static_cast<pid_t>(value & kOwner) != task.tid) return -EPERM;
+  if (static_cast<pid_t>(value & kOwner) != task.own_tid) return -EPERM;
   if (HandOn(FutexWords::KeyFor(task, call, call.args[0]), 0, {task.reached})) return 0;
   value = 0;
   return WriteMemory(task.process->pid, call.args[0], &value, sizeof value) ? 0 : -EFAULT;
@@ -132,12 +132,13 @@ std::int64_t LockFutexes::RequeueFromCondition(Task& task, const TrappedCall& ca
   }
   if (waiters.empty()) return 0;
   const auto owner_tid = static_cast<pid_t>(lock & FUTEX_TID_MASK);
-  Task* owner = owner_tid == 0 ? &run_.table.At(waiters.front()) : run_.table.Living(owner_tid);
+  Task* owner =
+      owner_tid == 0 ? &run_.table.At(waiters.front()) : run_.table.Named(*task.process, owner_tid);
   if (owner == nullptr) return -ESRCH;
   const std::size_t count = std::min(waiters.size(), static_cast<std::size_t>(most) + 1);
   const bool queued = (owner_tid == 0 ? count > 1 : true) ||
                       words_.MostUrgent(to, FUTEX_BITSET_MATCH_ANY) != nullptr;
-  lock = (lock & FUTEX_OWNER_DIED) | static_cast<std::uint32_t>(owner->tid) |
+  lock = (lock & FUTEX_OWNER_DIED) | static_cast<std::uint32_t>(owner->own_tid) |
          (queued ? FUTEX_WAITERS : 0);
   if (!WriteMemory(pid, call.args[4], &lock, sizeof lock)) return -EFAULT;
   for (std::size_t i = owner_tid == 0 ? 1 : 0; i < count; ++i) {

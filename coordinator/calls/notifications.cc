@@ -33,6 +33,14 @@ VirtualTime Notifications::WaitDeadlineOf(const Task& task, const shm::Notificat
   return std::max(task.process->clock.RobotTimeOf(deadline), task.reached);
 }
 
+// By the number that the thread's process says; 0 for any, and where it says what it alone knows.
+pid_t Notifications::ProcessNamed(const Task& by, std::int64_t said) {
+  const auto pid = static_cast<pid_t>(said);
+  if (pid <= 0 || by.process->pid_namespace == 0) return pid;
+  const Process* named = run_.table.NamedProcess(*by.process, pid);
+  return named == nullptr ? 0 : named->pid;
+}
+
 // Equals have their turn.
 bool Notifications::Yield(Task& task) {
   SchedulerOf(task).Yield(task.order);
@@ -73,7 +81,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       looks_again = true;
       break;
     case Kind::kWaitChild:
-      waker_.Wait(task, {awaited::Child{static_cast<pid_t>(note.args[0]), note.args[1] != 0}});
+      waker_.Wait(task, {awaited::Child{ProcessNamed(task, note.args[0]), note.args[1] != 0}});
       parts_.unknown_children.LookFor(*task.process);
       // It has looked, and found none; but since then one may have ended. One that it does not wait
       // for stays there, so a look at who is there would never let it wait.
@@ -102,7 +110,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       parts_.scheduling.Handle(task, note);
       break;
     case Kind::kSignalled:
-      parts_.signals.Sent(static_cast<pid_t>(note.args[0]), moment);
+      parts_.signals.Sent(ProcessNamed(task, note.args[0]), moment);
       break;
     case Kind::kWaitKey:
       parts_.objects.Wait(task, note, deadline);
@@ -139,7 +147,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       task.reply[0] = task.process->ended_children.ChargedNs(static_cast<pid_t>(note.args[0]));
       break;
     case Kind::kSignals:
-      if (ReachBySignal(run_, task, static_cast<pid_t>(note.args[0]))) {
+      if (ReachBySignal(run_, task, ProcessNamed(task, note.args[0]))) {
         waker_.Hold(task, Kind::kWrite);
       }
       break;

@@ -64,6 +64,10 @@ void RawChildWaits::Await(Task& task, const TrappedCall& call) {
   pid_t which = descriptor.pid;  // 0: any
   if (call.number == SYS_wait4) which = std::max(0, static_cast<int>(call.args[0]));
   if (call.number == SYS_waitid && call.args[0] == P_PID) which = static_cast<int>(call.args[1]);
+  if (which > 0 && task.process->pid_namespace != 0) {
+    const Process* named = run_.table.NamedProcess(*task.process, which);
+    which = named == nullptr ? 0 : named->pid;
+  }
   const bool has_news = std::any_of(
       run_.table.processes().begin(), run_.table.processes().end(), [&](const Process& p) {
         if (p.parent != task.process->pid || p.is_client || (which != 0 && p.pid != which))

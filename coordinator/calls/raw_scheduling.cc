@@ -133,7 +133,7 @@ std::int64_t RawScheduling::Call(Task& task, const TrappedCall& call) {
       call.number == SYS_sched_setaffinity || call.number == SYS_sched_getaffinity;
   if ((tid < 0 && !is_of_affinity) || (has_pointer && pointer == 0)) return -EINVAL;
   if (call.number == SYS_sched_setscheduler && static_cast<int>(call.args[1]) < 0) return -EINVAL;
-  Task* of = tid == 0 ? &task : run_.table.Living(tid);
+  Task* of = tid == 0 ? &task : run_.table.Named(*task.process, tid);
   switch (call.number) {
     case SYS_sched_setscheduler:
     case SYS_sched_setparam:

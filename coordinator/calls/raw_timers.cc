@@ -30,11 +30,12 @@ int PosixKind(const Task& task, clockid_t id, const sigevent& event, shm::TimerK
   if (const int error = shm::ErrorOfTimerOn(clock); error != 0) return error;
   kind->is_posix = 1;
   if (clock.kind == shm::ClockKind::kProcessCpu) {
-    if (clock.owner != 0 && clock.owner != task.process->pid) return EINVAL;
+    if (clock.owner != 0 && clock.owner != task.process->own_pid) return EINVAL;
     kind->clock = shm::TimerClock::kProcessCpu;
   } else if (clock.kind == shm::ClockKind::kThreadCpu) {
     kind->clock = shm::TimerClock::kThreadCpu;
-    kind->clock_tid = clock.owner != 0 ? clock.owner : task.tid;
+    kind->clock_tid =
+        clock.owner != 0 ? TimerCalls::ThreadNamed(*task.process, clock.owner) : task.tid;
     if (ProcessOfThread(kind->clock_tid) != task.process->pid) return EINVAL;
   } else {
     kind->clock_tid = clock.kind == shm::ClockKind::kRealtime ? 1 : 0;
@@ -44,7 +45,7 @@ int PosixKind(const Task& task, clockid_t id, const sigevent& event, shm::TimerK
   if (event.sigev_signo <= 0 || event.sigev_signo > SIGRTMAX) return EINVAL;
   kind->signal = event.sigev_signo;
   if (event.sigev_notify == SIGEV_THREAD_ID) {
-    kind->signal_tid = event._sigev_un._tid;
+    kind->signal_tid = TimerCalls::ThreadNamed(*task.process, event._sigev_un._tid);
     return ProcessOfThread(kind->signal_tid) == task.process->pid ? 0 : EINVAL;
   }
   const bool known = event.sigev_notify == SIGEV_SIGNAL || event.sigev_notify == SIGEV_THREAD;

@@ -92,7 +92,7 @@ std::int64_t SchedulingCalls::SetAffinity(const Task& asking, Task& task, std::u
 
 void SchedulingCalls::Handle(Task& asking, const shm::Notification& note) {
   const auto tid = static_cast<pid_t>(note.args[0]);
-  Task* task = tid == 0 ? &asking : run_.table.Living(tid);
+  Task* task = tid == 0 ? &asking : run_.table.Named(*asking.process, tid);
   asking.reply[1] = 0;
   if (task == nullptr || task->process->robot != asking.process->robot) {
     asking.reply[0] = -ESRCH;

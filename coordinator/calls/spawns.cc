@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coordinator/os/host.h"
+#include "coordinator/os/own_number.h"
 
 namespace tcs {
 
@@ -93,15 +94,14 @@ bool Spawns::IsNew(const Task& maker, pid_t tid) const {
          IsThreadOf(maker.process->pid, tid);
 }
 
-// 0: it is not there, or not yet. The number that the kernel has left is another one where the
-// program has a PID namespace of its own.
+// 0: it is not there, or not yet.
 pid_t Spawns::ThreadOf(const Task& maker, const CloneCall& call) const {
   const auto told = [&](const CloneCall& by) {
+    const Process& of = *maker.process;
     pid_t tid = 0;
-    const bool is_told = by.tid_address != 0 &&
-                         ReadMemory(maker.process->pid, by.tid_address, &tid, sizeof tid) &&
-                         IsNew(maker, tid);
-    return is_told ? tid : 0;
+    if (by.tid_address == 0 || !ReadMemory(of.pid, by.tid_address, &tid, sizeof tid)) return 0;
+    if (of.pid_namespace != 0) tid = ThreadByOwnNumber(of.pid, tid);
+    return IsNew(maker, tid) ? tid : 0;
   };
   if (const pid_t tid = told(call); tid != 0) return tid;
   for (const pid_t tid : ThreadsOf(maker.process->pid)) {
@@ -209,6 +209,7 @@ void Spawns::AnnouncedProcess(Task& maker, pid_t pid) {
   const auto found = std::find_if(maker.births.begin(), maker.births.end(), is_it);
   if (found != maker.births.end()) maker.births.erase(found);
   const Process& of = *maker.process;
+  if (of.pid_namespace != 0) pid = ChildByOwnNumber(of.pid, pid);
   if (pid <= 0 || run_.table.LivingProcess(pid) != nullptr || run_.table.Living(pid) != nullptr)
     return;
   if (ThreadState(pid) == 'X' || ThreadState(pid) == 'Z') return;

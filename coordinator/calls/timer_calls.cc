@@ -9,6 +9,7 @@
 
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
+#include "coordinator/os/own_number.h"
 #include "coordinator/os/timer_descriptor.h"
 #include "coordinator/processes/usage_book.h"
 #include "coordinator/tasks/borrowed.h"
@@ -57,6 +58,10 @@ UniqueFd TimerCalls::DescriptorOf(const Process& process, int number) {
   return fd && IsTimerDescriptor(fd.get()) ? std::move(fd) : UniqueFd();
 }
 
+pid_t TimerCalls::ThreadNamed(const Process& process, pid_t said) {
+  return process.pid_namespace == 0 ? said : ThreadByOwnNumber(process.pid, said);
+}
+
 void TimerCalls::Create(Task& task, const shm::Notification& note) {
   Process& process = *task.process;
   if (process.timers.IsFull()) return;
@@ -64,6 +69,10 @@ void TimerCalls::Create(Task& task, const shm::Notification& note) {
   static_assert(sizeof kind == sizeof note.args - sizeof note.args[0]);
   memcpy(static_cast<void*>(&kind), &note.args[1], sizeof kind);
   if (kind.signal < 0 || kind.signal > SIGRTMAX) return;
+  if (kind.signal_tid != 0) kind.signal_tid = ThreadNamed(process, kind.signal_tid);
+  if (kind.clock == shm::TimerClock::kThreadCpu) {
+    kind.clock_tid = ThreadNamed(process, kind.clock_tid);
+  }
   UniqueFd fd;
   if (note.args[0] >= 0) {
     fd = DescriptorOf(process, static_cast<int>(note.args[0]));

@@ -33,6 +33,8 @@ class TimerCalls {
   static void Delete(Process& process, std::int64_t id);
   // A process's timer_create timers end when it executes another program.
   static void DeletePosix(Process& process);
+  // The thread of the process's that it gives this number, by tcsim's; 0: none.
+  static pid_t ThreadNamed(const Process& process, pid_t said);
   // Our copy of a process's descriptor; none if that is no timer.
   static UniqueFd DescriptorOf(const Process& process, int number);
 

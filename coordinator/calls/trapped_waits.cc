@@ -33,7 +33,7 @@ void TrappedWaits::Interrupt(Task& task) {
   const auto* sleep = wait.As<awaited::Time>();
   if (sleep != nullptr && sleep->remaining_address != 0) {
     const VirtualDuration left = std::max(VirtualDuration(), wait.deadline - task.reached);
-    Write(task, sleep->remaining_address, ToTimespec(left.ns()));
+    if (!Write(task, sleep->remaining_address, ToTimespec(left.ns()))) task.trap_result = -EFAULT;
   }
 }
 

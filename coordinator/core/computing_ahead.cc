@@ -128,6 +128,13 @@ void ComputingAhead::StayHome(Process* process) {
   }
 }
 
+void ComputingAhead::BringHomeHolders(const Process& process, bool long_held) {
+  for (Task* task : owing_) {
+    if (!task->is_ahead || task->process != &process) continue;
+    if (long_held || CpuOf(*task).HasLeft()) BringHome(*task);
+  }
+}
+
 void ComputingAhead::MakeRoomForHelpers() {
   for (FurtherCpu& cpu : cpus_) cpu.LetNobodyRest();
 }

@@ -58,6 +58,11 @@ class ComputingAhead {
   // The process's threads take turns only, from now on: what they share is changed here, too. Null:
   // so do all processes'.
   void StayHome(Process* process);
+  // Another thread of the process waits in the kernel, perhaps for what one of those that compute
+  // ahead has there: the map of the process's memory. One that has come to its limit was stopped
+  // with it, and is at home from now on, where it can be let finish (held_threads.h). `long_held`:
+  // so are those that compute, for others may keep them from their processors.
+  void BringHomeHolders(const Process& process, bool long_held);
   // Helpers of the physics need the further processors, too: nobody keeps them from there.
   void MakeRoomForHelpers();
   // It has ended.

@@ -28,6 +28,8 @@ constexpr int kMostFullTurns = 1000;  // whoever floods its pipe must not hold u
 constexpr HostDuration kHeldTurn = HostDuration::Microseconds(100);
 // Where another one has its level.
 constexpr HostDuration kLentTurn = HostDuration::Microseconds(20);
+// After so many such looks the kernel has held it for long.
+constexpr int kLongHeldLooks = 10;
 // The detector's false alarms make it wait twice as long each time, up to 2^this times kHeldTurn.
 constexpr int kMostFalseAlarms = 6;
 constexpr int kHeldTurns = 200;
@@ -64,6 +66,9 @@ Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
     ChargeUndispatched(task);
     task.trap_id = 0;
     task.notified_early = true;
+  } else if (SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
+    // The kernel let it run a handler before its turn, which is to answer what it said before.
+    SlotOf(task).note.kind = shm::NotificationKind::kResumed;
   }
   return kConcernsAll;
 }
@@ -137,7 +142,10 @@ bool Engine::BlockedInKernel() {
   const bool stopped = state == 'T' || state == 't';                // until a signal, or its tracer
   const bool in_vfork = state == 'D' && task.in_vfork;
   if (!stopped && !in_vfork && (state != 'S' || task.slot < 0)) {
-    if (state == 'D') held_.LendLevel();
+    if (state == 'D') {
+      ahead_.BringHomeHolders(*task.process, run_.turn.held_looks > kLongHeldLooks);
+      held_.LendLevel();
+    }
     return false;
   }
   // Where others would go on without it, it gets a moment to come back: the world must not pass a

@@ -89,6 +89,7 @@ Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
     guard_.LetThrough(*call);
     return {};
   }
+  if (sockets_.ConnectBy(*call)) return {};
   if (MakesTask(*call) && by != nullptr && run_.turn.IsOf(*by) && Spawns::IsAnnounced(*by)) {
     Spawns::Begin(*by, *call);
     guard_.LetThrough(*call);

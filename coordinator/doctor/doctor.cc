@@ -25,7 +25,6 @@
 #include "coordinator/os/real_time_facts.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
-#include "shm/layout.h"
 
 namespace tcs {
 
@@ -80,19 +79,6 @@ Finding TryShim(const std::string& path) {
                    std::string(text, static_cast<std::size_t>(std::max<ssize_t>(0, n))));
 }
 
-// In a child, for a filter stays for ever.
-int TryTrap() {
-  const pid_t child = fork();
-  if (child == 0) {
-    const int error = InstallTrap({}) >= 0 ? 0 : errno;
-    // Nobody would answer the end of the process, which is trapped; that of its one thread is not.
-    syscall(SYS_exit, error, 0, 0, 0, 0, shm::kOwnCallMark);
-  }
-  int status = -1;
-  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return ECHILD;
-  return WEXITSTATUS(status);
-}
-
 Finding LookAtCpu() {
   cpu_set_t allowed;
   sched_getaffinity(0, sizeof allowed, &allowed);
@@ -132,7 +118,7 @@ std::vector<Finding> Examine(const std::string& preload_library) {
       JudgeThrottling(ReadFile("/proc/sys/kernel/sched_rt_runtime_us"),
                       ReadFile("/proc/sys/kernel/sched_rt_period_us"),
                       ReadFile("/proc/sys/kernel/osrelease")),
-      JudgeTrap(TryTrap()),
+      JudgeTrap(WhyNoTrap()),
       JudgeTsc(ReadFile("/proc/cpuinfo"),
                ReadFile("/sys/devices/system/clocksource/clocksource0/current_clocksource")),
       LookAtCpu(),

@@ -39,7 +39,6 @@ void FixedMeter::SetRates(const MeteredThread& thread, const SetCosts& costs,
 }
 
 std::uint64_t FixedMeter::Begin(MeteredThread& thread, std::uint64_t tsc, bool, bool is_silent) {
-  thread.silent_looks = 0;
   thread.is_silent = is_silent;
   thread.next_look = kLookAtSilentEvery;
   if (HasMadeCalls(thread, shm::ReadClockAt(*thread.page, tsc))) thread.silent_from_ns = -1;
@@ -53,18 +52,16 @@ HostDuration FixedMeter::TimeToLook(MeteredThread& thread, std::uint64_t, Progra
 Meter::Found FixedMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
                               const CpuClock& clock) {
   const shm::ClockReading now = shm::ReadClockAt(*thread.page, tsc);
-  const bool has_made_calls = HasMadeCalls(thread, now);
-  if (thread.pays_for_silence) {
-    if (has_made_calls) thread.silent_from_ns = -1;
-    return LookAtSilent(thread, now, horizon, clock());
-  }
-  thread.silent_looks = has_made_calls ? 0 : thread.silent_looks + 1;
-  return thread.silent_looks < kSilentLooks ? Found::kGoesOn : Found::kIsSilent;
+  const std::int64_t cpu_ns = clock();
+  if (HasMadeCalls(thread, now)) thread.silent_from_ns = -1;
+  if (thread.silent_from_ns < 0) thread.silent_from_ns = cpu_ns;
+  if (thread.pays_for_silence) return LookAtSilent(thread, now, horizon, cpu_ns);
+  const HostDuration silent = HostNs(cpu_ns - thread.silent_from_ns);
+  return silent < kSilentAfter ? Found::kGoesOn : Found::kIsSilent;
 }
 
 Meter::Found FixedMeter::LookAtSilent(MeteredThread& thread, const shm::ClockReading& now,
                                       ProgramTime horizon, std::int64_t cpu_ns) {
-  if (thread.silent_from_ns < 0) thread.silent_from_ns = cpu_ns;
   HostDuration silent = HostNs(cpu_ns - thread.silent_from_ns);
   const bool is_charged = silent >= kLookAtSilentEvery;
   if (is_charged) {

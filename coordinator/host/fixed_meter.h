@@ -16,7 +16,8 @@ namespace tcs {
 class FixedMeter : public Meter {
  public:
   static constexpr HostDuration kLookEvery = HostDuration::Milliseconds(50);
-  static constexpr int kSilentLooks = 100;  // until it is found silent
+  // By its CPU clock, whoever else has the processor: then it is found silent.
+  static constexpr HostDuration kSilentAfter = HostDuration::Seconds(5);
   // Of a client that is known for it.
   static constexpr HostDuration kLookAtSilentEvery = HostDuration::Microseconds(500);
   static constexpr VirtualDuration kSilentCost = VirtualDuration::Microseconds(500);

@@ -21,6 +21,7 @@
 #include "coordinator/os/say.h"
 #include "coordinator/os/signal_bits.h"
 #include "coordinator/os/strays.h"
+#include "coordinator/os/whereabouts.h"
 #include "shm/time_values.h"
 
 namespace tcs {
@@ -29,6 +30,9 @@ namespace {
 
 // Between looks at whether a stop is one of the whole job.
 constexpr std::int64_t kStopTurnNs = 100'000'000;
+
+// What the coordinator has to say where it goes astray.
+constexpr std::int64_t kSayWithinNs = 3'000'000'000;
 
 // True if a signal has stopped the process, or is about to.
 bool IsStopped(pid_t pid) {
@@ -144,21 +148,28 @@ class Keeper {
     const bool is_held = ThreadState(coordinator_) == 't';
     const bool was_held = std::exchange(was_held_, is_held);
     if (stands && is_busy) {
-      Kill(
-          "the coordinator computes without making progress, and is killed; this is a fault of "
-          "tcsim, please report it");
+      KillWhereItIs();
     } else if (stands && is_held && was_held) {
       Kill("process " + std::to_string(TracerOf(coordinator_)) +
            " traces the coordinator and has stopped it; the run is killed");
     }
   }
 
-  void Kill(const std::string& sentence) {
+  void Kill(const std::string& sentence, int signal = SIGKILL) {
     stop_by_ns_ = look_at_ns_ = kNever;
     if (!std::exchange(has_killed_, true)) Say(sentence);
     // In the kernel it may spin for something that its priority prevents.
     LeaveRealTime(coordinator_);
-    kill(coordinator_, SIGKILL);
+    kill(coordinator_, signal);
+  }
+
+  // It says where it computes, if it can (whereabouts.h).
+  void KillWhereItIs() {
+    Kill(
+        "the coordinator computes without making progress, and is killed; this is a fault of "
+        "tcsim, please report it",
+        SIGABRT);
+    stop_by_ns_ = HostClockNs(CLOCK_MONOTONIC) + kSayWithinNs;
   }
 
   static constexpr std::int64_t kNever = INT64_MAX;
@@ -214,6 +225,7 @@ void Keep(pid_t guardian, const GuardLimits& limits, GuardedState* state,
     setpgid(0, group);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != keeper) _exit(127);
+    TellWhereItDies();
     const int status = coordinate();
     fflush(nullptr);  // from the terminal's foreground
     // With the last process of a group whose parent is in another one, the kernel sends SIGHUP to

@@ -14,6 +14,7 @@
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -245,6 +246,18 @@ int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
   return install(more);
 }
 
+int WhyNoTrap() {
+  const pid_t child = fork();
+  if (child == 0) {
+    const int error = InstallTrap({}) >= 0 ? 0 : errno;
+    // Nobody would answer the end of the process, which is trapped; that of its one thread is not.
+    syscall(SYS_exit, error, 0, 0, 0, 0, shm::kOwnCallMark);
+  }
+  int status = -1;
+  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return ECHILD;
+  return WEXITSTATUS(status);
+}
+
 bool IsExecution(const TrappedCall& call) {
   return std::find(std::begin(kExecutions), std::end(kExecutions), call.number) !=
          std::end(kExecutions);
@@ -317,6 +330,16 @@ bool ContinueTrapped(int listener, std::uint64_t id) {
 
 bool HasAnswerToTake(int listener, std::uint64_t id) {
   return ioctl(listener, SECCOMP_IOCTL_NOTIF_ID_VALID, &id) == 0;
+}
+
+bool GiveDescriptor(const TrappedCall& call, int ours, int number) {
+  seccomp_notif_addfd add{};
+  add.id = call.id;
+  add.flags = SECCOMP_ADDFD_FLAG_SETFD;
+  add.srcfd = static_cast<std::uint32_t>(ours);
+  add.newfd = static_cast<std::uint32_t>(number);
+  add.newfd_flags = O_CLOEXEC;
+  return ioctl(call.listener, SECCOMP_IOCTL_NOTIF_ADDFD, &add) == number;
 }
 
 bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size) {

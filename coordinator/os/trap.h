@@ -41,6 +41,9 @@ struct TrappedToo {
 // processes (protection.h). The descriptor at which the calls arrive; -1: errno is set.
 int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too = {});
 
+// 0, or the errno of an attempt to install it in a child of its own, for a filter stays for ever.
+int WhyNoTrap();
+
 // A signal can be kept from a thread in a trapped call until that is answered (Linux 5.19). Where
 // it cannot, a handler runs while the call waits, and the thread makes the call again.
 bool TrapsHoldSignals();
@@ -74,6 +77,10 @@ bool AnswerTrappedByFile(int listener, std::uint64_t id, int file, bool on_exec)
 int PutFileInto(int listener, std::uint64_t id, int file, bool on_exec);
 // Lets the kernel carry it out.
 bool ContinueTrapped(int listener, std::uint64_t id);
+
+// While the call waits its process gets a copy of that descriptor of ours, under that number, which
+// names another one of its until then, and closed at an exec.
+bool GiveDescriptor(const TrappedCall& call, int ours, int number);
 
 // Results by which the kernel ends a call as it ends one of its own that a signal interrupts. It
 // knows them only in a thread that it has marked for a signal (IsMarkedForSignal, host.h); in any

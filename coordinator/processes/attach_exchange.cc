@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "coordinator/os/own_number.h"
 #include "coordinator/os/passed_fd.h"
 
 namespace tcs {
@@ -29,21 +30,34 @@ pid_t PeerOf(int connection) {
   return peer.pid;
 }
 
+// As tcsim numbers whoever speaks. False: it speaks for another process.
+bool Renumber(shm::AttachHello& hello, pid_t peer) {
+  if (hello.pid == peer) return true;
+  const OwnNumber own = OwnNumberOf(peer);
+  if (own.pid_namespace == 0 || own.number != hello.pid) return false;
+  hello.tid = hello.tid == hello.pid ? peer : ThreadByOwnNumber(peer, hello.tid);
+  hello.pid = peer;
+  return true;
+}
+
 }  // namespace
 
-std::optional<shm::AttachHello> PeekHello(int connection) {
+std::optional<shm::AttachHello> PeekHello(int connection, pid_t peer) {
   shm::AttachHello hello{};
   const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT | MSG_PEEK);
-  if (n != sizeof hello || hello.pid != PeerOf(connection)) return std::nullopt;
+  if (n != sizeof hello || !Renumber(hello, peer != 0 ? peer : PeerOf(connection))) {
+    return std::nullopt;
+  }
   return hello;
 }
 
-TakenHello TakeHello(int connection) {
+TakenHello TakeHello(int connection, pid_t peer) {
   shm::AttachHello hello{};
   const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT);
   if (n <= 0) return {.has_gone = true};
   const bool is_right = n == sizeof hello && hello.magic == shm::kMagic &&
-                        hello.version == shm::kVersion && hello.pid == PeerOf(connection);
+                        hello.version == shm::kVersion &&
+                        Renumber(hello, peer != 0 ? peer : PeerOf(connection));
   return {.hello = is_right ? std::optional(hello) : std::nullopt};
 }
 

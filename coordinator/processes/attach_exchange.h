@@ -15,15 +15,17 @@
 
 namespace tcs {
 
-// What the process wants, as far as it has said so; nothing if that is not a hello.
-std::optional<shm::AttachHello> PeekHello(int connection);
+// What the process wants, as far as it has said so; nothing if that is not a hello. Its numbers are
+// tcsim's. `peer`: which process it is, where the kernel does not tell that of the connection; 0:
+// it does.
+std::optional<shm::AttachHello> PeekHello(int connection, pid_t peer = 0);
 
 struct TakenHello {
   bool has_gone = false;
   // Nothing: the process speaks another protocol, or for another process.
   std::optional<shm::AttachHello> hello;
 };
-TakenHello TakeHello(int connection);
+TakenHello TakeHello(int connection, pid_t peer = 0);
 
 void Accept(int connection, std::uint32_t slot, std::span<const int> fds);
 // `why` is for the user, after the program's name and pid.

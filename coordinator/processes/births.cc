@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "coordinator/os/host.h"
+#include "coordinator/os/own_number.h"
 #include "coordinator/processes/cpu_limit.h"
 
 namespace tcs {
@@ -29,6 +30,7 @@ bool IsByDeadline(const Scenario& scenario, const Robot& robot) {
 Task& Births::AddTask(Process& process, pid_t tid, VirtualTime at) {
   Task& task = run_.table.AddTask(tid);
   task.process = &process;
+  task.own_tid = process.pid_namespace == 0 ? tid : OwnNumberOf(tid).number;
   task.parked = false;
   task.metered.speed = process.robot->speed;
   task.metered.is_ideal = process.robot->is_ideal;
@@ -49,6 +51,9 @@ Task& Births::AddTask(Process& process, pid_t tid, VirtualTime at) {
 Process& Births::AddProcess(pid_t pid, pid_t parent, Robot& robot) {
   Process& process = run_.table.AddProcess(pid);
   process.parent = parent;
+  const OwnNumber own = OwnNumberOf(pid);
+  process.own_pid = own.number;
+  process.pid_namespace = own.pid_namespace;
   process.robot = &robot;
   process.timers.TellOfNextExpiry(
       [&robot, index = process.index] { robot.scheduler.ExpiryChanged(index); });

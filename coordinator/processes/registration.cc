@@ -18,7 +18,7 @@ namespace tcs {
 bool Registration::Heard(int fd, Moment moment) {
   std::optional<Connection> connection = parts_.sockets.Take(fd);
   if (!connection.has_value()) return false;
-  const std::optional<shm::AttachHello> hello = PeekHello(fd);
+  const std::optional<shm::AttachHello> hello = PeekHello(fd, connection->peer);
   if (hello.has_value() && RegistersLater(*hello)) {
     parts_.reactor.Remove(fd);
     early_.insert_or_assign(hello->tid, std::move(*connection));
@@ -63,7 +63,7 @@ void Registration::LetRegister(const Task& dispatched) {
 // True if the running thread has to be stopped.
 bool Registration::Register(const Connection& connection, Moment moment) {
   const int fd = connection.fd.get();
-  const TakenHello taken = TakeHello(fd);
+  const TakenHello taken = TakeHello(fd, connection.peer);
   if (taken.has_gone) return false;
   if (!taken.hello.has_value()) {
     Refuse(fd, "it comes from another version of tcs");
@@ -190,7 +190,7 @@ void Registration::TakeEndWord(Task& task, std::uint64_t address) {
     if (other.end_word == address) other.end_word = 0;
     auto* wait = other.Awaits<awaited::Futex>();
     if (wait == nullptr) continue;
-    const bool joins = address == 0 ? wait->holds == task.tid : wait->address == address;
+    const bool joins = address == 0 ? wait->holds == task.own_tid : wait->address == address;
     if (joins) wait->names_tid = task.tid;
   }
   task.end_word = address;
@@ -224,8 +224,8 @@ UniqueFd Registration::GivePorter(Process& process) {
 // Ready for its first dispatch; or for the first of another program. `is_first`: it had no place.
 void Registration::PlaceAtGate(Task& task, VirtualTime at, bool is_first) {
   shm::ThreadSlot& slot = SlotOf(task);
-  slot.pid = task.process->pid;
-  slot.tid = task.tid;
+  slot.pid = task.process->own_pid;
+  slot.tid = task.own_tid;
   slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
   slot.robot = task.process->robot->number;
   slot.seed = run_.scenario.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);

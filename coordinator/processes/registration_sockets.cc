@@ -1,8 +1,12 @@
 #include "coordinator/processes/registration_sockets.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <stdlib.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
@@ -10,6 +14,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "coordinator/os/host.h"
@@ -50,6 +55,35 @@ void RegistrationSockets::Accept(std::uint32_t number) {
   UniqueFd fd(accept4(socket.fd.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
   if (!fd) return;
   Add({std::move(fd), socket.client});
+}
+
+bool RegistrationSockets::ConnectBy(const TrappedCall& call) {
+  if (call.number != SYS_connect) return false;
+  sockaddr_un address{};
+  constexpr std::size_t kName = offsetof(sockaddr_un, sun_path) + 1;
+  const std::size_t size = call.args[2];
+  if (size <= kName || size > sizeof address || !ReadMemory(call.tid, call.args[1], &address, size))
+    return false;
+  const std::string_view name(address.sun_path + 1, size - kName);
+  const std::string prefix = name_ + '.';
+  if (address.sun_family != AF_UNIX || address.sun_path[0] != '\0' || !name.starts_with(prefix)) {
+    return false;
+  }
+  const auto number =
+      static_cast<std::size_t>(atoi(std::string(name.substr(prefix.size())).c_str()));
+  const pid_t peer = ProcessOfThread(call.tid);
+  int ends[2];
+  if (number >= sockets_.size() || peer <= 0 ||
+      socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
+    return AnswerTrapped(call.listener, call.id, -ECONNREFUSED), true;
+  }
+  UniqueFd ours(ends[0]);
+  const UniqueFd theirs(ends[1]);
+  fcntl(ours.get(), F_SETFL, O_NONBLOCK);
+  const bool given = GiveDescriptor(call, theirs.get(), static_cast<int>(call.args[0]));
+  if (given) Add({std::move(ours), sockets_[number].client, peer});
+  AnswerTrapped(call.listener, call.id, given ? 0 : -ECONNREFUSED);
+  return true;
 }
 
 void RegistrationSockets::Add(Connection connection) {

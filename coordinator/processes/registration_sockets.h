@@ -1,6 +1,7 @@
 // Where processes register (shm/attach_protocol.h): a socket for each client and all that it
 // starts. So the client is known of which a process is a descendant, even if the process's parents
-// have ended. Also the processes that have connected, until they say what they want.
+// have ended. Also the processes that have connected, until they say what they want. A process that
+// finds no such socket, for it has a network of its own, connects by a trapped call.
 //
 // For the coordinator's thread only. The reactor says where a process has connected
 // (Tag::kListener, with the socket's number) and where one has said something (Tag::kConnection,
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "coordinator/os/own_computer.h"
+#include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/task.h"
@@ -30,6 +32,9 @@ class RegistrationSockets {
   struct Connection {
     UniqueFd fd;
     Process* client;  // that the socket is for
+    // Which process it is, by tcsim's number, if it came by a call (ConnectBy); 0: the kernel
+    // knows.
+    pid_t peer = 0;
   };
 
   explicit RegistrationSockets(Reactor& reactor);
@@ -42,6 +47,9 @@ class RegistrationSockets {
   void AssignTo(Process& client) { sockets_.back().client = &client; }
 
   void Accept(std::uint32_t number);
+  // The trapped call is to connect to one of the sockets, from a network namespace where there is
+  // none (a sandbox's). It is carried out here, and answered; false: it is another call.
+  bool ConnectBy(const TrappedCall& call);
   // It has not been heard yet, or will be heard again.
   void Add(Connection connection);
   // It says something; nothing if it was cut off.

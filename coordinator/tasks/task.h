@@ -65,6 +65,7 @@ struct VirtualCpu;
 struct Task : HostThread {
   Process* process = nullptr;
   VirtualCpu* cpu = nullptr;  // dispatched on last; null before the first time
+  pid_t own_tid = 0;          // by which its process knows it (os/own_number.h)
   int slot = -1;              // -1: it has not registered yet
   int order = 0;              // of registration; its number in the scheduling policies
   TaskState state = TaskState::kStarting;
@@ -176,6 +177,8 @@ struct Process {
   Process* client = nullptr;          // the client that it is or descends from
   const ClientSpec* spec = nullptr;   // of a client
   pid_t pid = 0, parent = 0;
+  pid_t own_pid = 0;                // by which it knows itself (os/own_number.h),
+  std::uint64_t pid_namespace = 0;  // and where; 0: in tcsim's
   UniqueFd pidfd;
   std::unique_ptr<Porter> porter;  // null where there are none, and before its first attach
   Robot* robot = nullptr;

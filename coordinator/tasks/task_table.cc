@@ -22,6 +22,27 @@ Task& TaskTable::AddTask(pid_t tid) {
   return *task;
 }
 
+Task* TaskTable::Named(const Process& by, pid_t tid) {
+  if (by.pid_namespace == 0) return Living(tid);
+  for (Task& task : tasks_) {
+    if (task.state != TaskState::kDead && task.own_tid == tid &&
+        task.process->pid_namespace == by.pid_namespace) {
+      return &task;
+    }
+  }
+  return nullptr;
+}
+
+Process* TaskTable::NamedProcess(const Process& by, pid_t pid) {
+  if (by.pid_namespace == 0) return LivingProcess(pid);
+  for (Process& process : processes_) {
+    if (!process.dead && process.own_pid == pid && process.pid_namespace == by.pid_namespace) {
+      return &process;
+    }
+  }
+  return nullptr;
+}
+
 Process& TaskTable::AddProcess(pid_t pid) {
   Process* process = nullptr;
   if (ended_processes_.size() > kKeptAfterEnd) {

@@ -44,6 +44,9 @@ class TaskTable {
   // Null if none that lives has that number.
   Task* Living(pid_t tid) const;
   Process* LivingProcess(pid_t pid) const;
+  // The same by the numbers that a process says.
+  Task* Named(const Process& by, pid_t tid);
+  Process* NamedProcess(const Process& by, pid_t pid);
   // A process's threads that live, in the order in which the kernel considers them for a signal:
   // the main thread first, wherever its place is.
   std::vector<Task*> ThreadsOf(const Process& process);

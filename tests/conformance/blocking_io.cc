@@ -1,5 +1,5 @@
-// A reader blocks until a child, which sleeps first, writes: woken at the writer's time, not
-// before.
+// A reader blocks until a child, which sleeps first, writes, and a writer until it reads: woken at
+// the child's time, not before.
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -69,6 +69,28 @@ void Udp() {
       });
 }
 
+// No room in the queue of the receiver's socket, which cannot be polled from the sender's.
+void FullQueue() {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  socklen_t size = sizeof address;
+  const int receiver = socket(AF_UNIX, SOCK_DGRAM, 0);
+  // A name that the kernel chooses.
+  EXPECT(bind(receiver, reinterpret_cast<sockaddr*>(&address), sizeof address.sun_family) == 0,
+         "bind: %s", strerror(errno));
+  getsockname(receiver, reinterpret_cast<sockaddr*>(&address), &size);
+  const int sender = socket(AF_UNIX, SOCK_DGRAM, 0);
+  const auto send = [&](int flags) {
+    return sendto(sender, "z", 1, flags, reinterpret_cast<sockaddr*>(&address), size);
+  };
+  while (send(MSG_DONTWAIT) == 1) {
+  }
+  EXPECT(errno == EAGAIN, "a full queue: %s", strerror(errno));
+  WakesAfterTheDelay(
+      "a full queue", [&] { ReadOne(receiver); },
+      [&] { EXPECT(send(0) == 1, "sendto: %s", strerror(errno)); });
+}
+
 void Tcp() {
   sockaddr_in address = Loopback();
   const int listener = Bound(SOCK_STREAM, &address);
@@ -124,6 +146,7 @@ int main(int argc, char** argv) {
   Begin(argc, argv);
   Pairs();
   Udp();
+  FullQueue();
   Tcp();
   Terminal();
   EndOfFile();

@@ -1,5 +1,7 @@
 // A signal handler ends a sleep; what was left is told.
 #include <signal.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include "tests/conformance/alarm_in.h"
 #include "tests/conformance/conformance.h"
@@ -48,6 +50,19 @@ int main(int argc, char** argv) {
     AlarmIn(100 * kMs);
     EXPECT(usleep(900'000) == -1 && errno == EINTR, "usleep was not interrupted");
     EXPECT(g_handled == before + 4, "%d handlers ran", int(g_handled - before));
+
+    // Where what is left cannot be told, the sleep says that.
+    auto* const nowhere = reinterpret_cast<timespec*>(8);
+    AlarmIn(100 * kMs);
+    start = Now();
+    EXPECT(nanosleep(&wanted, nowhere) == -1 && errno == EFAULT, "%s", strerror(errno));
+    ExpectSoonAfter(start, 100 * kMs, "a sleep that cannot tell");
+    AlarmIn(100 * kMs);
+    start = Now();
+    const long raw = syscall(SYS_clock_nanosleep, CLOCK_MONOTONIC, 0, &wanted, nowhere);
+    EXPECT(raw == -1 && errno == EFAULT, "by the system call: %ld, %s", raw, strerror(errno));
+    ExpectSoonAfter(start, 100 * kMs, "a system call that cannot tell");
+    EXPECT(g_handled == before + 6, "%d handlers ran", int(g_handled - before));
   }
 
   // An ignored signal ends nothing.

@@ -43,6 +43,8 @@ void Writer(Process& self) {
     self.peer.Meet("told");
     OK(dds_delete(DDS_CYCLONEDDS_HANDLE));
     self.peer.Meet("deleted");
+    // Whoever looks late would see one writer go and the next one come at once.
+    self.peer.Meet("seen");
     self.participant = self.Participant();
   }
 }
@@ -58,6 +60,7 @@ void Reader(Process& self) {
     self.peer.Meet("deleted");
     WaitForWriters(reader, 0);
     TakeAndTell(reader, "its end");
+    self.peer.Meet("seen");
   }
 }
 

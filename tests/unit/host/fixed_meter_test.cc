@@ -18,21 +18,8 @@ class FixedMeterTest : public testing::Test {
     grant_.WriteTo(page_);
     page_.base_tsc = meter_.Begin(thread_, 0, true, false);
   }
-  ~FixedMeterTest() override {
-    EXPECT_TRUE(asked_ == 0 || thread_.pays_for_silence) << "a clock of the host has been asked";
-  }
 
-  // The timer has come so often, and nobody has made a call.
-  Meter::Found LookTimes(int times) {
-    Meter::Found found = Meter::Found::kGoesOn;
-    for (int i = 0; i < times && found == Meter::Found::kGoesOn; ++i) {
-      tsc_ += 1'000'000;
-      meter_.TimeToLook(thread_, tsc_, kFar);
-      found = meter_.Look(thread_, tsc_, kFar, clock_);
-    }
-    return found;
-  }
-  // The thread, which pays for it, has computed for so long by its CPU clock.
+  // The thread has computed for so long by its CPU clock, and is looked at.
   Meter::Found Compute(HostDuration computed, ProgramTime horizon = kFar) {
     cpu_ns_ += computed.ns();
     return meter_.Look(thread_, tsc_, horizon, clock_);
@@ -44,12 +31,8 @@ class FixedMeterTest : public testing::Test {
   ClockGrant grant_;
   FixedMeter meter_;
   std::uint64_t tsc_ = 0;
-  int asked_ = 0;
   std::int64_t cpu_ns_ = 7 * kMs;
-  Meter::CpuClock clock_ = [this] {
-    ++asked_;
-    return cpu_ns_;
-  };
+  Meter::CpuClock clock_ = [this] { return cpu_ns_; };
 };
 
 TEST_F(FixedMeterTest, ComputingTakesNoTime) {
@@ -78,15 +61,23 @@ TEST_F(FixedMeterTest, NoSleepOfTheCoordinatorsIsTooLong) {
 }
 
 TEST_F(FixedMeterTest, WhoComputesForLongWithoutACallIsSilent) {
-  EXPECT_EQ(LookTimes(FixedMeter::kSilentLooks - 1), Meter::Found::kGoesOn);
-  EXPECT_EQ(LookTimes(1), Meter::Found::kIsSilent);
+  EXPECT_EQ(Compute({}), Meter::Found::kGoesOn);  // here it is seen first
+  EXPECT_EQ(Compute(FixedMeter::kSilentAfter - HostNs(1)), Meter::Found::kGoesOn);
+  EXPECT_EQ(Compute(HostNs(1)), Meter::Found::kIsSilent);
+}
+
+TEST_F(FixedMeterTest, WaitingForTheProcessorIsNoSilence) {
+  for (int i = 0; i < 1000; ++i) {
+    tsc_ += 1'000'000'000;
+    EXPECT_EQ(Compute({}), Meter::Found::kGoesOn);
+  }
 }
 
 TEST_F(FixedMeterTest, AnyCallBreaksTheSilence) {
-  EXPECT_EQ(LookTimes(FixedMeter::kSilentLooks - 1), Meter::Found::kGoesOn);
+  EXPECT_EQ(Compute({}), Meter::Found::kGoesOn);
   page_.executed_adjust += 1000;
-  EXPECT_EQ(LookTimes(FixedMeter::kSilentLooks), Meter::Found::kGoesOn);
-  EXPECT_EQ(LookTimes(1), Meter::Found::kIsSilent);
+  EXPECT_EQ(Compute(FixedMeter::kSilentAfter), Meter::Found::kGoesOn);
+  EXPECT_EQ(Compute(FixedMeter::kSilentAfter), Meter::Found::kIsSilent);
 }
 
 class PaysForSilence : public FixedMeterTest {

@@ -18,12 +18,12 @@
 namespace tcs {
 namespace {
 
-// The guardian in a process of its own, as tcsim runs it; its stderr is closed.
-pid_t Guard(int (*coordinate)(), GuardLimits limits) {
+// The guardian in a process of its own, as tcsim runs it; its stderr is closed, unless it `speaks`.
+pid_t Guard(int (*coordinate)(), GuardLimits limits, bool speaks = false) {
   const pid_t pid = fork();
   if (pid != 0) return pid;
   setpgid(0, 0);  // a group that is left with somebody who was stopped is sent SIGHUP
-  close(STDERR_FILENO);
+  if (!speaks) close(STDERR_FILENO);
   _exit(RunGuarded(coordinate, limits));
 }
 
@@ -67,6 +67,22 @@ TEST(Guardian, TheExitStatusIsTheCoordinators) {
 
 TEST(Guardian, ACoordinatorThatGoesAstrayIsKilled) {
   const int status = StatusOf(Guard(GoAstray, {.look_every_s = 1}));
+  EXPECT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(WTERMSIG(status), SIGABRT);
+}
+
+TEST(Guardian, ItSaysWhereItWentAstray) {
+  EXPECT_EXIT(_exit(WTERMSIG(StatusOf(Guard(GoAstray, {.look_every_s = 1}, true)))),
+              testing::ExitedWithCode(SIGABRT),
+              "is killed; this is a fault of tcsim.*\n.*where it was.*\n.*\\(\\+0x[0-9a-f]+\\)");
+}
+
+TEST(Guardian, OneThatCannotSayWhereIsKilledAllTheSame) {
+  const auto mute = [] {
+    signal(SIGABRT, SIG_IGN);
+    return GoAstray();
+  };
+  const int status = StatusOf(Guard(mute, {.look_every_s = 1}));
   EXPECT_TRUE(WIFSIGNALED(status));
   EXPECT_EQ(WTERMSIG(status), SIGKILL);
 }
