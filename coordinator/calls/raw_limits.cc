@@ -4,6 +4,7 @@
 #include <sys/syscall.h>
 
 #include "coordinator/os/host.h"
+#include "coordinator/os/own_number.h"
 #include "coordinator/processes/cpu_limit.h"
 #include "coordinator/tasks/client_values.h"
 
@@ -29,7 +30,11 @@ std::int64_t RawLimits::Call(Task& task, const TrappedCall& call) const {
   Process* process = task.process;
   std::uint64_t given = 0, asked = 0;
   if (call.number == SYS_prlimit64) {
-    const auto pid = static_cast<pid_t>(call.args[0]);
+    auto pid = static_cast<pid_t>(call.args[0]);
+    // Who lives in a PID namespace of its own is answered of itself only.
+    if (pid != 0 && process->pid_namespace != 0) {
+      pid = ThreadByOwnNumber(process->pid, pid) == process->pid ? process->pid : -1;
+    }
     if (pid != 0 && pid != process->pid) {
       const Task* other = run_.table.Living(pid);
       process = other != nullptr ? other->process : run_.table.LivingProcess(pid);
