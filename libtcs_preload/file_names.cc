@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "libtcs_preload/aliases.h"
+#include "libtcs_preload/computer_files.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -18,9 +19,38 @@ namespace {
 // The two structures are one here, and the kernel's.
 static_assert(sizeof(struct stat) == sizeof(struct stat64));
 
+// What the kernel says; of what is in the folders of the robot's processors, `ask(fd)`. The kernel
+// comes first, for it knows whether the name can be read at all.
+template <class Ask, class Kernel>
+long OfProcessors(const char* path, bool follows, Ask ask, Kernel kernel) {
+  const long found = kernel();
+  if (found == -EFAULT) return found;
+  const long fd = OpenProcessorFolder(path, follows ? 0 : O_NOFOLLOW);
+  if (fd == -ENOENT || fd == -ENOTDIR) return fd;
+  if (fd < 0) return found;
+  const long result = ask(fd);
+  RawSyscall(SYS_close, fd);
+  return result;
+}
+
+bool Follows(int flags) { return (flags & AT_SYMLINK_NOFOLLOW) == 0; }
+
 int StatAt(int folder, const char* path, void* status, int flags) {
-  return static_cast<int>(
-      ToErrno(RawSyscall(SYS_newfstatat, folder, Arg(FileOf(path)), Arg(status), flags)));
+  return static_cast<int>(ToErrno(OfProcessors(
+      path, Follows(flags),
+      [&](long fd) { return RawSyscall(SYS_newfstatat, fd, Arg(""), Arg(status), AT_EMPTY_PATH); },
+      [&] { return RawSyscall(SYS_newfstatat, folder, Arg(FileOf(path)), Arg(status), flags); })));
+}
+
+int AccessAt(int folder, const char* path, int mode, int flags) {
+  const auto kernel = [&]() -> long {
+    const int result = TCS_REAL(faccessat)(folder, FileOf(path), mode, flags);
+    return result == 0 ? 0 : -errno;
+  };
+  return static_cast<int>(ToErrno(OfProcessors(
+      path, Follows(flags),
+      [&](long fd) { return RawSyscall(SYS_faccessat2, fd, Arg(""), mode, AT_EMPTY_PATH); },
+      kernel)));
 }
 
 // What programs call in their place that were built with glibc up to 2.32, whose header has such a
@@ -76,12 +106,14 @@ TCS_EXPORT int fstatat64(int folder, const char* path, struct stat64* status, in
 }
 TCS_EXPORT int statx(int folder, const char* path, int flags, unsigned mask,
                      struct statx* status) noexcept {
-  return static_cast<int>(
-      ToErrno(RawSyscall(SYS_statx, folder, Arg(FileOf(path)), flags, mask, Arg(status))));
+  return static_cast<int>(ToErrno(OfProcessors(
+      path, Follows(flags),
+      [&](long fd) { return RawSyscall(SYS_statx, fd, Arg(""), AT_EMPTY_PATH, mask, Arg(status)); },
+      [&] { return RawSyscall(SYS_statx, folder, Arg(FileOf(path)), flags, mask, Arg(status)); })));
 }
 TCS_EXPORT int access(const char* path, int mode) noexcept {
-  return TCS_REAL(access)(FileOf(path), mode);
+  return AccessAt(AT_FDCWD, path, mode, 0);
 }
 TCS_EXPORT int faccessat(int folder, const char* path, int mode, int flags) noexcept {
-  return TCS_REAL(faccessat)(folder, FileOf(path), mode, flags);
+  return AccessAt(folder, path, mode, flags);
 }

@@ -11,6 +11,7 @@
 #include <termios.h>
 
 #include "libtcs_preload/aliases.h"
+#include "libtcs_preload/computer_files.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/kernel_wait.h"
@@ -77,6 +78,9 @@ int OpenAt(int folder, const char* path, int flags, mode_t mode) {
   const char* file = FileOf(path);
   if (file != path) return OpenDevice(folder, file, flags, mode);
   if (Current() != nullptr) pthread_testcancel();
+  if (MayBeOfComputer(folder, path, flags)) {
+    return static_cast<int>(ToErrno(OpenOfComputer(folder, path, flags)));
+  }
   return static_cast<int>(ToErrno(Opening(folder, path, flags, true, [&] {
     return RawSyscall(SYS_openat, folder, Arg(path), flags, static_cast<long>(mode));
   })));

@@ -1,6 +1,7 @@
 // New processes and the ends of old ones. Children register themselves: the shim is in their
 // environment.
 #include <errno.h>
+#include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
 #include <spawn.h>
@@ -151,9 +152,22 @@ TCS_EXPORT pid_t waitpid(pid_t pid, int* status, int options) {
 
 TCS_EXPORT pid_t wait(int* status) { return wait4(-1, status, 0, nullptr); }
 
+namespace {
+
+// A descriptor of a process that says EAGAIN rather than wait (PIDFD_NONBLOCK).
+bool NeverWaits(idtype_t type, id_t id) {
+  constexpr idtype_t kOfDescriptor =
+      static_cast<idtype_t>(3);  // P_PIDFD, which glibc has since 2.36
+  if (type != kOfDescriptor) return false;
+  const long flags = RawSyscall(SYS_fcntl, static_cast<int>(id), F_GETFL);
+  return flags < 0 || (flags & O_NONBLOCK) != 0;
+}
+
+}  // namespace
+
 TCS_EXPORT int waitid(idtype_t type, id_t id, siginfo_t* info, int options) {
   const Entered t;
-  if (t == nullptr || (options & WNOHANG) != 0) {
+  if (t == nullptr || (options & WNOHANG) != 0 || NeverWaits(type, id)) {
     return static_cast<int>(ToErrno(RawSyscall(SYS_waitid, type, id, Arg(info), options, 0)));
   }
   siginfo_t found{};

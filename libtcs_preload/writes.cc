@@ -239,10 +239,8 @@ long ConnectFar(GuestThread& t, int fd, const sockaddr* address, socklen_t size)
     errno = saved;
     return -error;
   }
-  int error = 0;
-  socklen_t error_size = sizeof error;
-  RawSyscall(SYS_getsockopt, file.fd(), SOL_SOCKET, SO_ERROR, Arg(&error), Arg(&error_size));
-  return -error;
+  // By this the kernel, too, finds that it is connected, or not, and says what became of it.
+  return ConnectOnce(file.fd(), address, size);
 }
 
 }  // namespace

@@ -179,6 +179,15 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
       task.trap_continues = true;
       parts_.local_sockets.BindsUnseen(task.process->robot, call);
       break;
+    case SYS_setrlimit:
+    case SYS_getrlimit:
+    case SYS_prlimit64:
+      task.trap_result = parts_.limits.Call(task, call);
+      break;
+    case SYS_open:
+    case SYS_openat:
+      parts_.computer_files.Open(task, call);
+      break;
     case SYS_pidfd_getfd:
       task.trap_continues = true;
       parts_.local_sockets.ReachesBy(task, call);
@@ -200,6 +209,7 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
       task.trap_result = parts_.words.WaitForAny(task, call);
       break;
     default:  // SYS_io_uring_setup
+      task.process->asked_for_io_uring = true;
       task.trap_result = -ENOSYS;
   }
   return task.Awaits<awaited::Descriptors>() != nullptr;

@@ -8,10 +8,12 @@
 #include <functional>
 #include <utility>
 
+#include "coordinator/calls/computer_files.h"
 #include "coordinator/calls/futex_words.h"
 #include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/raw_child_waits.h"
 #include "coordinator/calls/raw_ipc.h"
+#include "coordinator/calls/raw_limits.h"
 #include "coordinator/calls/raw_polls.h"
 #include "coordinator/calls/raw_scheduling.h"
 #include "coordinator/calls/raw_timers.h"
@@ -37,6 +39,8 @@ class RawCalls {
     RawIpc& ipc;
     FutexWords& words;
     LocalSockets& local_sockets;
+    ComputerFiles& computer_files;
+    RawLimits& limits;
   };
 
   // `yield` lets equals have their turn (true: as Handle); `exit` ends the thread.

@@ -1,13 +1,41 @@
 #include "coordinator/calls/raw_child_waits.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <stdlib.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <fstream>
+#include <string>
 
 #include "coordinator/os/host.h"
 
 namespace tcs {
+
+namespace {
+
+// What the descriptor of a process says of itself: whose it is (0: it is none, or that one has
+// ended), and whether it says EAGAIN rather than wait (PIDFD_NONBLOCK).
+struct ProcessDescriptor {
+  pid_t pid = 0;
+  bool waits = true;
+};
+
+ProcessDescriptor DescriptorOf(pid_t tid, int number) {
+  ProcessDescriptor found;
+  std::ifstream info(fmt::format("/proc/{}/fdinfo/{}", tid, number));
+  for (std::string line; std::getline(info, line);) {
+    if (line.rfind("flags:", 0) == 0) {
+      found.waits = (strtol(line.c_str() + 6, nullptr, 8) & O_NONBLOCK) == 0;
+    }
+    if (line.rfind("Pid:", 0) == 0) found.pid = std::max(0, atoi(line.c_str() + 4));
+  }
+  return found;
+}
+
+}  // namespace
 
 void RawChildWaits::ForgetNews(const Process& parent) {
   for (Process& child : run_.table.processes()) {
@@ -24,11 +52,16 @@ void RawChildWaits::Await(Task& task, const TrappedCall& call) {
       unknown_.AreOf(*task.process) ||
       std::any_of(run_.table.processes().begin(), run_.table.processes().end(),
                   [&](const Process& p) { return p.parent == task.process->pid && !p.dead; });
-  if ((options & WNOHANG) != 0 || !has_living) {
+  constexpr std::uint64_t kOfDescriptor = 3;  // P_PIDFD, which glibc has since 2.36
+  ProcessDescriptor descriptor;
+  if (call.number == SYS_waitid && call.args[0] == kOfDescriptor) {
+    descriptor = DescriptorOf(task.tid, static_cast<int>(call.args[1]));
+  }
+  if ((options & WNOHANG) != 0 || !descriptor.waits || !has_living) {
     waker_.HoldInCall(task, shm::NotificationKind::kRead);
     return;
   }
-  pid_t which = 0;  // any
+  pid_t which = descriptor.pid;  // 0: any
   if (call.number == SYS_wait4) which = std::max(0, static_cast<int>(call.args[0]));
   if (call.number == SYS_waitid && call.args[0] == P_PID) which = static_cast<int>(call.args[1]);
   if (which > 0 && task.process->pid_namespace != 0) {

@@ -96,7 +96,7 @@ std::int64_t RawPolls::Poll(Task& task, const TrappedCall& call) {
   std::int64_t timeout_ns = 0;
   task.trap_continues = true;
   // What is wrong with it the kernel says best.
-  if (!TimeoutOf(task, call, &timeout_ns)) return 0;
+  if (!TimeoutOf(task, call, &timeout_ns) || !MaskOf(task, call).has_value()) return 0;
   const auto waited = FdsOf(task, call);
   if (!waited.has_value()) return 0;
   std::vector<DescriptorWaits::Copy> copies;
@@ -170,6 +170,31 @@ std::optional<std::vector<shm::WaitFd>> RawPolls::FdsOf(const Task& task, const 
   }
 }
 
+// The mask that the call sets while it waits: none where there is something wrong with it. 0: it
+// sets none.
+std::optional<std::uint64_t> RawPolls::MaskOf(const Task& task, const TrappedCall& call) {
+  std::uint64_t mask[2] = {0, sizeof(std::uint64_t)};  // where it is, and its size
+  switch (call.number) {
+    case SYS_ppoll:
+      mask[0] = call.args[3];
+      mask[1] = call.args[4];
+      break;
+    case SYS_pselect6:
+      if (call.args[5] != 0 && !Read(task, call.args[5], &mask)) return std::nullopt;
+      break;
+    case SYS_epoll_pwait:
+    case SYS_epoll_pwait2:
+      mask[0] = call.args[4];
+      mask[1] = call.args[5];
+      break;
+    default:
+      break;
+  }
+  std::uint64_t set = 0;
+  const bool is_wrong = mask[0] != 0 && (mask[1] != sizeof set || !Read(task, mask[0], &set));
+  return is_wrong ? std::nullopt : std::optional(mask[0]);
+}
+
 // The signals that end the call though the thread blocks them: its mask lets them in. Those that do
 // nothing, or only stop the thread, do not.
 std::uint64_t RawPolls::SignalsOf(const Task& task, const TrappedCall& call) {
@@ -177,21 +202,8 @@ std::uint64_t RawPolls::SignalsOf(const Task& task, const TrappedCall& call) {
                                    SignalBit(SIGWINCH) | SignalBit(SIGTSTP) | SignalBit(SIGTTIN) |
                                    SignalBit(SIGTTOU);
   constexpr std::uint64_t kNeverHeld = SignalBit(SIGKILL) | SignalBit(SIGSTOP);
-  std::uint64_t address = 0, mask = 0;
-  switch (call.number) {
-    case SYS_ppoll:
-      address = call.args[3];
-      break;
-    case SYS_pselect6:
-      if (call.args[5] != 0 && !Read(task, call.args[5], &address)) return 0;
-      break;
-    case SYS_epoll_pwait:
-    case SYS_epoll_pwait2:
-      address = call.args[4];
-      break;
-    default:
-      break;
-  }
+  const std::uint64_t address = MaskOf(task, call).value_or(0);
+  std::uint64_t mask = 0;
   if (address == 0 || !Read(task, address, &mask)) return 0;
   const SignalSets sets = ReadSignalSets(task.tid);
   return ~mask & ~kNeverHeld & ~sets.ignored & ~(kNoEnd & ~sets.caught);

@@ -31,6 +31,7 @@ class RawPolls {
  private:
   static bool TimeoutOf(Task& task, const TrappedCall& call, std::int64_t* ns);
   static std::optional<std::vector<shm::WaitFd>> FdsOf(const Task& task, const TrappedCall& call);
+  static std::optional<std::uint64_t> MaskOf(const Task& task, const TrappedCall& call);
   static std::uint64_t SignalsOf(const Task& task, const TrappedCall& call);
 
   Waker& waker_;

@@ -162,7 +162,7 @@ std::int64_t RawTimers::PosixTimer(Task& task, const TrappedCall& call) {
   if (!kind.has_value() || kind->is_posix == 0) return -EINVAL;
   switch (call.number) {
     case SYS_timer_settime:
-      return Set(task, found, call);
+      return call.args[2] == 0 ? -EINVAL : Set(task, found, call);
     case SYS_timer_gettime:
       return Write(task, call.args[1], Exchange(task, found, false, 0, 0)) ? 0 : -EFAULT;
     case SYS_timer_getoverrun:

@@ -231,6 +231,7 @@ void Engine::Settle(Task& task) {
   task.ran = host;
   metered.longest_run = HostNs(PreemptionTimer::LongestOfLate(metered.longest_run.ns(), host.ns()));
   task.charged = charged;
+  task.cpu->busy += executed;
   task.debt = debt;
   activations_.TakeReceipts(task, clock.At(progress));
   task.trapped_calls += made_unseen_call;

@@ -319,18 +319,21 @@ class Engine {
   // Calls that are made raw.
   RawTimes raw_times_{run_, waker_};
   RawUsage raw_usage_{run_};
+  ComputerFiles computer_files_{run_};
+  RawLimits raw_limits_{run_};
   RawPolls raw_polls_{waker_, descriptors_};
   RawDraws raw_draws_{run_};
   RawTransfers raw_transfers_{waker_,      activations_,   descriptors_,
                               raw_timers_, local_sockets_, raw_draws_};
   RawChildWaits raw_child_waits_{run_, waker_, unknown_children_};
   RawIpc raw_ipc_{run_, waker_, activations_, objects_, descriptors_};
-  RawCalls raw_calls_{run_,
-                      waker_,
-                      {raw_times_, raw_usage_, raw_timers_, raw_polls_, raw_transfers_,
-                       raw_child_waits_, raw_scheduling_, raw_ipc_, words_, local_sockets_},
-                      [this](Task& task) { return notifications_.Yield(task); },
-                      [this](Task& task, const TrappedCall& call) { trapped_.Exit(task, call); }};
+  RawCalls raw_calls_{
+      run_,
+      waker_,
+      {raw_times_, raw_usage_, raw_timers_, raw_polls_, raw_transfers_, raw_child_waits_,
+       raw_scheduling_, raw_ipc_, words_, local_sockets_, computer_files_, raw_limits_},
+      [this](Task& task) { return notifications_.Yield(task); },
+      [this](Task& task, const TrappedCall& call) { trapped_.Exit(task, call); }};
   TrappedWaits trapped_waits_{words_, raw_child_waits_, activations_};
   TrappedCalls trapped_{run_,    waker_,     futexes_,       raw_calls_, guard_,
                         deaths_, *executor_, local_sockets_, spawns_};

@@ -56,6 +56,11 @@ std::string AbsolutePathOf(const std::string& path) {
   return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
+void RemoveAll(const std::string& path) {
+  std::error_code gone;
+  std::filesystem::remove_all(path, gone);
+}
+
 std::string CopyFolder(const std::string& from, const std::string& to) {
   namespace fs = std::filesystem;
   std::error_code error;

@@ -22,6 +22,9 @@ enum class Withstands { kCrash, kPowerCut };
 // Its absolute path, without "." and "..", and without a slash at its end.
 [[nodiscard]] std::string AbsolutePathOf(const std::string& path);
 
+// Removes the file, or the folder with all that is in it, as far as that is allowed.
+void RemoveAll(const std::string& path);
+
 // Copies what is in one folder into another, which is there: files with their permissions, folders
 // and symbolic links; no sockets, pipes and devices. Empty on success, else one sentence.
 [[nodiscard]] std::string CopyFolder(const std::string& from, const std::string& to);

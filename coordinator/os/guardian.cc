@@ -13,6 +13,7 @@
 #include <string>
 
 #include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/files.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/keeper.h"
 #include "coordinator/os/say.h"
@@ -92,7 +93,7 @@ void RemoveIfKilled(const std::string& path) {
 
 // First the file: were this process killed between the two, the file would go, too.
 void RemoveNow(const std::string& path) {
-  unlink(path.c_str());
+  RemoveAll(path);
   if (g_state == nullptr) return;
   for (Removal& removal : g_state->removals) {
     if (removal.is_set.load() && path == removal.path) removal.is_set.store(false);

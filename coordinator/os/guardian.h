@@ -50,8 +50,8 @@ void Beat();
 void LeaveNote(const std::string& path, const std::string& text);
 void TakeNoteBack();
 
-// A file that must not outlive the run: the keeper removes it if `coordinate` ends without
-// RemoveNow. Of a few hundred, that is; of the rest a killed run leaves files.
+// A file, or a folder, that must not outlive the run: the keeper removes it if `coordinate` ends
+// without RemoveNow. Of a few hundred, that is; of the rest a killed run leaves files.
 void RemoveIfKilled(const std::string& path);
 void RemoveNow(const std::string& path);
 

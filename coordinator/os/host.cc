@@ -168,6 +168,14 @@ std::optional<int> WaitStatusOf(pid_t child) {
   return W_EXITCODE(0, info.si_status) | (info.si_code == CLD_DUMPED ? WCOREFLAG : 0);
 }
 
+std::optional<int> EndOf(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t name_end = text.rfind(") Z "), last = text.rfind(' ');
+  if (name_end == std::string::npos || last == std::string::npos) return std::nullopt;
+  return atoi(text.c_str() + last + 1);
+}
+
 namespace {
 
 // Of /proc/TID/status: null without it, else `text`.

@@ -86,6 +86,8 @@ bool IsDying(pid_t tid);
 
 // How a child of this process has ended, as of waitpid, which still finds it; none if it lives.
 std::optional<int> WaitStatusOf(pid_t child);
+// The same of any process that nobody has reaped, as far as this one may know it.
+std::optional<int> EndOf(pid_t pid);
 
 // The signals that a thread's process catches and ignores, that the thread blocks, and that wait
 // for delivery to the thread or to any of its process; bit 0 is signal 1.

@@ -193,7 +193,7 @@ void EndWhatIsLeft(int status, GuardedState* state) {
   if (WIFSIGNALED(status) && cpu >= 0) LowerStraysOn(cpu, state->pid_max);
   KillDescendants();
   for (Removal& removal : state->removals) {
-    if (removal.is_set.exchange(false)) unlink(removal.path);
+    if (removal.is_set.exchange(false)) RemoveAll(removal.path);
   }
   const int which = state->note.exchange(-1);
   if (which < 0) return;

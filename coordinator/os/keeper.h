@@ -21,7 +21,7 @@ struct Note {
   char text[kMostText];
 };
 
-// A file that must not outlive the run (guardian.h).
+// A file or folder that must not outlive the run (guardian.h).
 struct Removal {
   static constexpr std::size_t kMostPath = 256;
   std::atomic<bool> is_set{false};

@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
@@ -95,6 +96,9 @@ constexpr std::uint32_t kNuma = SYS_get_mempolicy;
 // Without it the C library takes the next way, getcpu, and so do others.
 constexpr std::uint32_t kRseq = SYS_rseq;
 
+// Flags of opens that are not for reading only.
+constexpr std::uint32_t kMakesOrWrites = O_ACCMODE | O_CREAT | O_PATH;
+
 // The upper half of an argument.
 sock_filter LoadUpper(std::size_t argument) {
   return Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument +
@@ -139,6 +143,27 @@ std::vector<sock_filter> NativeProgram(const Numbers& numbers) {
       JumpIfEqual(F_OFD_SETLK, 2, 0),
       JumpIfEqual(F_OFD_SETLKW, 1, 0),
       allow,
+      LoadArgument(5),
+      JumpIfEqual(shm::kOwnCallMark, 0, 1),
+      allow,
+      trap,
+      // Limits of processor time only: what was charged is to be limited.
+      JumpIfEqual(SYS_prlimit64, 0, 2),
+      LoadArgument(1),
+      {BPF_JMP | BPF_JA, 0, 0, 3},
+      JumpIfEqual(SYS_setrlimit, 1, 0),
+      JumpIfEqual(SYS_getrlimit, 0, 4),
+      LoadArgument(0),
+      JumpIfEqual(RLIMIT_CPU, 0, 1),
+      trap,
+      allow,
+      // Files that are opened for reading only: it may be one of the robot's computer.
+      JumpIfEqual(SYS_open, 0, 2),
+      LoadArgument(1),
+      {BPF_JMP | BPF_JA, 0, 0, 2},
+      JumpIfEqual(SYS_openat, 0, 6),
+      LoadArgument(2),
+      {BPF_JMP | BPF_JSET | BPF_K, 2, 0, kMakesOrWrites},
       LoadArgument(5),
       JumpIfEqual(shm::kOwnCallMark, 0, 1),
       allow,

@@ -8,6 +8,7 @@
 
 #include "coordinator/os/host.h"
 #include "coordinator/os/own_number.h"
+#include "coordinator/processes/cpu_limit.h"
 
 namespace tcs {
 
@@ -34,6 +35,8 @@ Task& Births::AddTask(Process& process, pid_t tid, VirtualTime at) {
   task.metered.speed = process.robot->speed;
   task.metered.is_ideal = process.robot->is_ideal;
   task.ComeTo(std::max(at, waker_.EarliestWake()));
+  task.started_at = task.reached;
+  if (tid == process.pid) process.started_at = task.reached;
   task.activation.release_ns = task.reached.ns();
   process.robot->tasks.push_back(&task);
   SchedulerOf(task).Add(task.order, process.priority);
@@ -74,7 +77,6 @@ Task& Births::AddClient(pid_t pid, Robot& robot, const ClientSpec& client, Virtu
   process.patch_vdso = client.patch_vdso;
   process.dds_endpoints = client.dds == DdsTransport::kEndpoints;
   Task& task = AddTask(process, pid, at);
-  process.started_at = task.reached;
   task.row = records_.AddRow(robot.name, client.name);
   return task;
 }
@@ -91,6 +93,7 @@ Task& Births::AddChild(pid_t pid, pid_t parent, const Process& maker, VirtualTim
   // That of the gateway speaks to programs by sockets.
   process.dds_endpoints = maker.dds_endpoints && !maker.robot->is_ours;
   process.clock = maker.clock.Fork();
+  InheritCpuLimit(maker, process);
   Task& task = AddTask(process, pid, at);
   task.is_further = true;
   task.row = records_.AddRow(process.robot->name, NumberedName(task));

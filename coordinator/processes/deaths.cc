@@ -1,5 +1,7 @@
 #include "coordinator/processes/deaths.h"
 
+#include <fmt/format.h>
+#include <signal.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -79,6 +81,7 @@ void Deaths::ProcessEnded(std::uint32_t index, Moment moment) {
     moment.at = run_.turn.task()->reached;
   }
   process.dead = true;
+  if (process.asked_for_io_uring) TellOfRefusal(process);
   run_.table.ProcessEnded(process);
   process.ended_at = moment.at;
   EndThreadsOf(process, nullptr, moment);
@@ -98,6 +101,17 @@ void Deaths::ProcessEnded(std::uint32_t index, Moment moment) {
   listeners_.process_has_ended(process, moment);
   if (!process.is_client) run_.table.GiveUp(process);
   Reap(process);
+}
+
+// Most programs that are refused io_uring do without. One that fails then may have failed for that.
+void Deaths::TellOfRefusal(const Process& process) const {
+  const int status = EndOf(process.pid).value_or(0);
+  const bool gave_up = WIFEXITED(status) ? WEXITSTATUS(status) != 0 : WTERMSIG(status) == SIGABRT;
+  if (!gave_up) return;
+  run_.Warn(fmt::format(
+      "{} asked for io_uring, which tcs refuses (ENOSYS, as a kernel without it does), and failed; "
+      "if that is why, have it use threads or epoll instead",
+      process.client->name));
 }
 
 // If it is the coordinator's own child.

@@ -60,6 +60,7 @@ class Deaths {
  private:
   void EndThreadsOf(const Process& process, const Task* except, Moment moment);
   void Reap(Process& process);
+  void TellOfRefusal(const Process& process) const;
 
   RunState& run_;
   Waker& waker_;

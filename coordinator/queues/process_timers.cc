@@ -23,8 +23,18 @@ constexpr std::int64_t kLookNs = shm::kShortIntervalNs;
 
 bool IsItimer(std::int64_t id) { return id >= ITIMER_REAL && id <= ITIMER_PROF; }
 
-shm::TimerKind KindOfItimer(std::int64_t which) {
+// There from the beginning, and not deleted.
+bool IsOfProcess(std::int64_t id) {
+  return IsItimer(id) || id == ProcessTimers::kCpuLimit || id == ProcessTimers::kMostCpu;
+}
+
+shm::TimerKind KindOfOwn(std::int64_t which) {
   shm::TimerKind kind;
+  if (!IsItimer(which)) {
+    kind.signal = which == ProcessTimers::kCpuLimit ? SIGXCPU : SIGKILL;
+    kind.clock = TimerClock::kProcessCpu;
+    return kind;
+  }
   kind.signal = which == ITIMER_REAL ? SIGALRM : which == ITIMER_VIRTUAL ? SIGVTALRM : SIGPROF;
   kind.clock = which == ITIMER_REAL ? TimerClock::kTime : TimerClock::kProcessCpu;
   return kind;
@@ -76,7 +86,7 @@ const ProcessTimers::Timer* ProcessTimers::Find(Id id) const {
 }
 
 ProcessTimers::Timer* ProcessTimers::Find(Id id) {
-  if (IsItimer(id)) timers_.try_emplace(id, Timer{.kind = KindOfItimer(id)});
+  if (IsOfProcess(id)) timers_.try_emplace(id, Timer{.kind = KindOfOwn(id)});
   const auto found = timers_.find(id);
   return found == timers_.end() ? nullptr : &found->second;
 }
@@ -93,7 +103,7 @@ ProcessTimers::Id ProcessTimers::Create(const shm::TimerKind& kind) {
 }
 
 void ProcessTimers::Delete(Id id) {
-  if (IsItimer(id) || timers_.erase(id) == 0) return;
+  if (IsOfProcess(id) || timers_.erase(id) == 0) return;
   std::erase_if(signals_, [id](const TimerSignal& signal) { return signal.timer_id == id; });
   FindNext();
 }
@@ -107,7 +117,7 @@ void ProcessTimers::DeletePosix() {
 }
 
 std::optional<shm::TimerKind> ProcessTimers::KindOf(Id id) const {
-  if (IsItimer(id)) return KindOfItimer(id);
+  if (IsOfProcess(id)) return KindOfOwn(id);
   const Timer* timer = Find(id);
   return timer == nullptr ? std::nullopt : std::optional(timer->kind);
 }
@@ -129,7 +139,10 @@ void ProcessTimers::Set(Id id, Setting setting, VirtualDuration lead) {
   Timer* timer = Find(id);
   if (timer == nullptr) return;
   timer->setting.next_ns = std::max<std::int64_t>(0, setting.next_ns);
-  timer->setting.interval_ns = std::max<std::int64_t>(0, setting.interval_ns);
+  // The kernel forgets the interval of one that is disarmed, but for the timers of descriptors and
+  // those of setitimer on processor time.
+  const bool forgets = setting.next_ns <= 0 && (timer->kind.is_posix != 0 || id == ITIMER_REAL);
+  timer->setting.interval_ns = forgets ? 0 : std::max<std::int64_t>(0, setting.interval_ns);
   timer->lead = lead;
   timer->is_signal_underway = timer->was_seen_accepted = timer->rests = false;
   timer->overruns = timer->accepted_overruns = 0;

@@ -52,6 +52,11 @@ class ProcessTimers {
   // Beside setitimer's. Natively its limits (RLIMIT_SIGPENDING, RLIMIT_NOFILE) are about the same.
   static constexpr std::size_t kMost = 16'384;
 
+  // Beside setitimer's, of the process itself: what it may compute until it is told so (SIGXCPU),
+  // and at all (SIGKILL). Programs have no number for them.
+  static constexpr Id kCpuLimit = 3, kMostCpu = 4;
+  static_assert(kMostCpu < shm::kFirstTimerId);
+
   struct Setting {
     std::int64_t next_ns = 0;  // 0: not armed
     std::int64_t interval_ns = 0;

@@ -23,6 +23,7 @@ void RunState::Warn(const std::string& text) {
 HostDuration RunState::ChargeAsDebt(Task& task, VirtualDuration computed) {
   task.charged += computed;
   task.debt += computed;
+  if (task.cpu != nullptr) task.cpu->busy += computed;
   const HostDuration host = task.metered.OnHost(computed);
   report.client_ns += host.ns();
   return host;

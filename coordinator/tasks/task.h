@@ -72,6 +72,7 @@ struct Task : HostThread {
   // What it has come to: the time of its last stop, or of what has made it ready since. Changed by
   // ComeTo only.
   VirtualTime reached;
+  VirtualTime started_at;
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
   std::optional<Wait> wait;                                   // while kWaiting
   VirtualDuration lead;              // of its process's clock when it last stopped
@@ -211,13 +212,15 @@ struct Process {
   bool has_erred = false;         // a client: it, or a descendant, was expelled
   Task* deliverer = nullptr;      // its thread that takes what is for it
   bool dead = false;
-  bool killed = false;                 // at the end of its grace
-  bool expelled = false;               // killed, for what it has written into shared memory
-  int threads = 1;                     // that ever attached
-  DescriptorChanges changes;           // of its descriptors
-  bool has_unmanaged_threads = false;  // threads that never will
-  bool is_client = false;              // named in the scenario, rather than a child of one
-  int wait_status = 0;                 // once dead, of the coordinator's own children
+  bool killed = false;                      // at the end of its grace
+  bool expelled = false;                    // killed, for what it has written into shared memory
+  int threads = 1;                          // that ever attached
+  DescriptorChanges changes;                // of its descriptors
+  bool has_unmanaged_threads = false;       // threads that never will
+  bool is_client = false;                   // named in the scenario, rather than a child of one
+  int wait_status = 0;                      // once dead, of the coordinator's own children
+  std::optional<std::uint64_t> most_cpu_s;  // what it may compute at most (cpu_limit.h)
+  bool asked_for_io_uring = false;          // which it was refused
   VirtualTime started_at;
   std::optional<VirtualTime> ended_at;
 };
@@ -226,6 +229,7 @@ struct VirtualCpu {
   Robot* robot = nullptr;
   std::uint32_t core = 0;
   VirtualTime progress;  // changed by ComeTo only
+  VirtualDuration busy;  // how much was computed on it
   TemporalConsistency::Leaf leaf = -1;
   // Of an ideal robot's: where it has been standing, and since when.
   std::optional<VirtualTime> stands_at;
