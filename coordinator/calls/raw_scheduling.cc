@@ -45,7 +45,10 @@ std::int64_t RawScheduling::SetScheduling(Task& task, Task* of, const TrappedCal
   sched_param param{};
   if (!Read(task, call.args[keeps ? 1 : 2], &param)) return -EFAULT;
   const std::int64_t policy = keeps ? shm::kKeepPolicy : static_cast<int>(call.args[1]);
-  if (of == nullptr) return SchedulingCalls::ErrorForStranger(policy, param.sched_priority);
+  if (of == nullptr) {
+    const auto tid = static_cast<pid_t>(call.args[0]);
+    return SchedulingCalls::ErrorForStranger(tid, policy, param.sched_priority);
+  }
   return calls_.SetPriority(task, *of, policy, param.sched_priority);
 }
 

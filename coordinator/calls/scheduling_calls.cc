@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "coordinator/calls/scheduling_rights.h"
+#include "coordinator/os/host.h"
 
 namespace tcs {
 
@@ -90,9 +91,11 @@ std::int64_t SchedulingCalls::SetAffinity(const Task& asking, Task& task, std::u
   return 0;
 }
 
-std::int64_t SchedulingCalls::ErrorForStranger(std::int64_t policy, std::int64_t priority) {
+std::int64_t SchedulingCalls::ErrorForStranger(pid_t tid, std::int64_t policy,
+                                               std::int64_t priority) {
+  if (tid <= 0 || ThreadState(tid) == 'X') return -ESRCH;
   const bool is_valid = policy == shm::kKeepPolicy || IsValid(Wanted({}, policy, priority));
-  return is_valid ? -ESRCH : -EINVAL;
+  return is_valid ? -EPERM : -EINVAL;
 }
 
 void SchedulingCalls::Handle(Task& asking, const shm::Notification& note) {
@@ -101,7 +104,7 @@ void SchedulingCalls::Handle(Task& asking, const shm::Notification& note) {
   asking.reply[1] = 0;
   if (task == nullptr || task->process->robot != asking.process->robot) {
     const bool sets = note.kind == shm::NotificationKind::kPriority;
-    asking.reply[0] = sets ? ErrorForStranger(note.args[1], note.args[2]) : -ESRCH;
+    asking.reply[0] = sets ? ErrorForStranger(tid, note.args[1], note.args[2]) : -ESRCH;
     return;
   }
   switch (note.kind) {

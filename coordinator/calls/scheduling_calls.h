@@ -27,8 +27,8 @@ class SchedulingCalls {
   // `policy` may be shm::kKeepPolicy.
   std::int64_t SetPriority(const Task& asking, Task& task, std::int64_t policy,
                            std::int64_t priority);
-  // The same for a thread that is none of the robot's.
-  static std::int64_t ErrorForStranger(std::int64_t policy, std::int64_t priority);
+  // The same for a thread that is none of the robot's: nobody of the run may.
+  static std::int64_t ErrorForStranger(pid_t tid, std::int64_t policy, std::int64_t priority);
   static std::int64_t SetAffinity(const Task& asking, Task& task, std::uint64_t cores);
 
  private:

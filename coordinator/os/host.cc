@@ -116,6 +116,7 @@ struct ThreadStat {
   char state = 'X';
   pid_t parent = -1;
   unsigned flags = 0;  // the kernel's PF_*
+  unsigned long user_ticks = 0, system_ticks = 0;
 };
 
 ThreadStat ReadThreadStat(pid_t tid) {
@@ -130,13 +131,21 @@ ThreadStat ReadThreadStat(pid_t tid) {
   ThreadStat stat;
   if (end == nullptr) return {};
   const int found =
-      sscanf(end + 1, " %c %d %*d %*d %*d %*d %u", &stat.state, &stat.parent, &stat.flags);
-  return found == 3 ? stat : ThreadStat{};
+      sscanf(end + 1, " %c %d %*d %*d %*d %*d %u %*u %*u %*u %*u %lu %lu", &stat.state,
+             &stat.parent, &stat.flags, &stat.user_ticks, &stat.system_ticks);
+  return found == 5 ? stat : ThreadStat{};
 }
 
 }  // namespace
 
 char ThreadState(pid_t tid) { return ReadThreadStat(tid).state; }
+
+ComputedTimes ComputedBy(pid_t pid) {
+  const ThreadStat stat = ReadThreadStat(pid);
+  const std::int64_t tick_ns = shm::kNsPerSecond / sysconf(_SC_CLK_TCK);
+  return {static_cast<std::int64_t>(stat.user_ticks) * tick_ns,
+          static_cast<std::int64_t>(stat.system_ticks) * tick_ns};
+}
 
 bool IsMarkedForSignal(pid_t tid) {
   const char state = ThreadState(tid);

@@ -65,6 +65,12 @@ std::int64_t ProcessCpuClockNs(pid_t pid);
 int OpenThreadCpuClock(pid_t tid);
 std::int64_t ReadThreadCpuClock(int fd);
 
+// What a process has computed, by the kernel's own books: in its programs and in system calls.
+struct ComputedTimes {
+  std::int64_t user_ns = 0, system_ns = 0;
+};
+ComputedTimes ComputedBy(pid_t pid);
+
 // The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
 char ThreadState(pid_t tid);
 

@@ -145,10 +145,11 @@ class Keeper {
     const bool stands = std::exchange(beats_seen_, beats) == beats;
     const bool is_busy = computed_ns - std::exchange(computed_ns_, computed_ns) >
                          std::int64_t{limits_.look_every_s} * (shm::kNsPerSecond / 5 * 4);
+    const ComputedTimes times = ComputedBy(coordinator_), before = std::exchange(times_, times);
     const bool is_held = ThreadState(coordinator_) == 't';
     const bool was_held = std::exchange(was_held_, is_held);
     if (stands && is_busy) {
-      KillWhereItIs();
+      KillWhereItIs((times.system_ns - before.system_ns) / shm::kNsPerSecond);
     } else if (stands && is_held && was_held) {
       Kill("process " + std::to_string(TracerOf(coordinator_)) +
            " traces the coordinator and has stopped it; the run is killed");
@@ -163,12 +164,12 @@ class Keeper {
     kill(coordinator_, signal);
   }
 
-  // It says where it computes, if it can (whereabouts.h).
-  void KillWhereItIs() {
-    Kill(
-        "the coordinator computes without making progress, and is killed; this is a fault of "
-        "tcsim, please report it",
-        SIGABRT);
+  // It says where it computes, if it can (whereabouts.h): in the kernel it may not.
+  void KillWhereItIs(std::int64_t in_kernel_s) {
+    Kill("the coordinator computes without making progress (" + std::to_string(in_kernel_s) +
+             " of the last " + std::to_string(limits_.look_every_s) +
+             " s in the kernel), and is killed; this is a fault of tcsim, please report it",
+         SIGABRT);
     stop_by_ns_ = HostClockNs(CLOCK_MONOTONIC) + kSayWithinNs;
   }
 
@@ -181,6 +182,7 @@ class Keeper {
   std::int64_t look_at_ns_ = kNever, stop_by_ns_ = kNever, stop_turn_ns_ = kNever;
   std::uint64_t beats_seen_ = 0;
   std::int64_t computed_ns_ = 0;
+  ComputedTimes times_;
   bool is_orphan_ = false, has_killed_ = false;
   bool is_stopped_ = false, was_the_jobs_ = false, has_said_stop_ = false;
   bool was_held_ = false;

@@ -21,9 +21,10 @@ alignas(16) char g_stack[64 * 1024];
 // Once: then the signal does what it does by default.
 void TellAndDie(int signal) {
   constexpr char kIntroduction[] = "tcsim: for the report, where it was (as addr2line takes it):\n";
+  const bool can_speak = write(STDERR_FILENO, kIntroduction, sizeof kIntroduction - 1) > 0;
   void* frames[kMostFrames];
-  const int count = backtrace(frames, kMostFrames);
-  if (write(STDERR_FILENO, kIntroduction, sizeof kIntroduction - 1) > 0 && count > kOwnFrames) {
+  const int count = can_speak ? backtrace(frames, kMostFrames) : 0;
+  if (count > kOwnFrames) {
     backtrace_symbols_fd(frames + kOwnFrames, count - kOwnFrames, STDERR_FILENO);
   }
   raise(signal);

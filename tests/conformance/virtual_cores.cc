@@ -125,6 +125,22 @@ void RawCalls() {
          CPU_COUNT_S(static_cast<std::size_t>(size), &all));
 }
 
+// A process that is none of the run's: nobody of the run may schedule it.
+void Strangers() {
+  const sched_param ordinary{};
+  const pid_t nobody = 0x3ffffff, first = 1;
+  EXPECT(sched_setscheduler(nobody, SCHED_OTHER, &ordinary) == -1 && errno == ESRCH, "nobody");
+  EXPECT(sched_setscheduler(first, 99, &ordinary) == -1 && errno == EINVAL, "policy 99: %s",
+         strerror(errno));
+  const long raw = syscall(SYS_sched_setscheduler, first, 99, &ordinary);
+  EXPECT(raw == -1 && errno == EINVAL, "policy 99, raw: %s", strerror(errno));
+  const long unreadable = syscall(SYS_sched_setscheduler, first, SCHED_OTHER, 8);
+  EXPECT(unreadable == -1 && errno == EFAULT, "no parameters: %s", strerror(errno));
+  if (g_mode == Mode::kNative) return;  // root may
+  EXPECT(sched_setscheduler(first, SCHED_OTHER, &ordinary) == -1 && errno == EPERM, "%s",
+         strerror(errno));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -133,6 +149,7 @@ int main(int argc, char** argv) {
   CoresOfThreads();
   if (g_mode != Mode::kNative) Priorities();
   if (g_mode != Mode::kNative) RawCalls();
+  Strangers();
   EXPECT(sched_yield() == 0, "sched_yield");
   errno = 0;
   EXPECT(nice(0) >= -20 && errno == 0, "nice");
