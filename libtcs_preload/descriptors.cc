@@ -11,6 +11,7 @@
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
+#include "libtcs_preload/linger.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/timer_fds.h"
 
@@ -79,6 +80,7 @@ long CloseRange(unsigned first, unsigned last, unsigned flags) {
 TCS_EXPORT int close(int fd) {
   if (IsOwnDescriptor(fd)) return Fail(EBADF);
   ForgetTimer(fd);
+  LingerBeforeClosing(fd);
   BeginClosing(fd);
   return static_cast<int>(ToErrno(MayUnlock(RawSyscall(SYS_close, fd))));
 }
@@ -100,6 +102,7 @@ TCS_EXPORT int dup(int fd) noexcept {
 
 TCS_EXPORT int dup3(int from, int to, int flags) noexcept {
   if (IsOwnDescriptor(to)) return Fail(EBUSY);
+  if (from != to && RawSyscall(SYS_fcntl, from, F_GETFD) >= 0) LingerBeforeClosing(to);
   BeginClosing(to);
   const long copy = RawSyscall(SYS_dup3, from, to, flags);
   if (copy >= 0) {

@@ -16,6 +16,7 @@
 
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/linger.h"
 #include "libtcs_preload/raw_syscall.h"
 
 using namespace tcs::preload;
@@ -97,6 +98,7 @@ TCS_EXPORT int setsockopt(int fd, int level, int option, const void* value,
     }
     if (option == TCP_QUICKACK) AcknowledgeAtOnce(fd);
   }
+  if (result == 0 && level == SOL_SOCKET && option == SO_LINGER) NoteLinger(value, size);
   return static_cast<int>(ToErrno(result));
 }
 

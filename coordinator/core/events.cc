@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/os/call_names.h"
 #include "coordinator/os/host.h"
 #include "coordinator/tasks/cpu_clock.h"
 #include "shm/attach_protocol.h"
@@ -167,8 +168,9 @@ bool Engine::BlockedInKernel() {
     return true;
   }
   run_.Warn(fmt::format(
-      "{} blocked in system call {}, which the shim does not know; that time is not charged",
-      task.process->name, ThreadSystemCall(task.tid)));
+      "{} blocked in {} of {}, a call that the shim does not know; that time is not charged",
+      task.process->name, NameOfSystemCall(ThreadSystemCall(task.tid)),
+      ProgramOf(task.process->pid)));
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "coordinator/calls/call_files.h"
+#include "coordinator/calls/last_descriptor.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "shm/check.h"
@@ -61,6 +62,10 @@ Task* Engine::TaskOf(const TrappedCall& call) {
 Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
   if (!call.has_value()) return {.stops_running = !run_.gates_only, .wakes_others = true};
+  if (LastDescriptor::AsksFor(*call)) {
+    LastDescriptor::Answer(run_, run_.table.Living(call->tid), *call);
+    return {};
+  }
   if (CallFiles::AsksFor(*call)) {
     CallFiles::Answer(run_.table.Living(call->tid), *call);
     return {};
