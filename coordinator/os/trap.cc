@@ -106,13 +106,13 @@ sock_filter LoadUpper(std::size_t argument) {
 }
 
 // What is trapped by its number alone.
-struct Numbers {
+struct TrappedNumbers {
   std::vector<std::uint32_t> others;    // unless the shim made the call
   std::vector<std::uint32_t> unmarked;  // whoever made it
 };
 
 // What programs of this architecture call, after the number was loaded.
-std::vector<sock_filter> NativeProgram(const Numbers& numbers) {
+std::vector<sock_filter> NativeProgram(const TrappedNumbers& numbers) {
   const sock_filter allow = Return(SECCOMP_RET_ALLOW), trap = Return(SECCOMP_RET_USER_NOTIF);
   std::vector<std::uint32_t> trapped = numbers.others;
   trapped.insert(trapped.end(), numbers.unmarked.begin(), numbers.unmarked.end());
@@ -188,7 +188,7 @@ std::vector<sock_filter> NativeProgram(const Numbers& numbers) {
   return program;
 }
 
-std::vector<sock_filter> Program(const std::vector<pid_t>& guarded, const Numbers& numbers) {
+std::vector<sock_filter> Program(const std::vector<pid_t>& guarded, const TrappedNumbers& numbers) {
   constexpr std::uint32_t kX32 = 0x40000000;  // a third table of numbers, which nobody uses
   const std::vector<sock_filter> of_32_bits = Protection(CallTable::kOf32Bits, guarded);
   std::vector<sock_filter> program{
@@ -225,7 +225,7 @@ int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
   // Without a real-time priority nothing else keeps a thread in its call when a signal comes, if
   // the kernel can; and it may be sent one to stop.
   const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
-  Numbers numbers{{std::begin(kTrapped), std::end(kTrapped)}, {}};
+  TrappedNumbers numbers{{std::begin(kTrapped), std::end(kTrapped)}, {}};
   if (too.draws) numbers.others.push_back(SYS_getrandom);
   if (!has_level || too.executions) {
     numbers.unmarked.assign(std::begin(kExecutions), std::end(kExecutions));
