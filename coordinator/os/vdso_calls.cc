@@ -21,10 +21,10 @@ namespace {
 
 // xor r9d, r9d (an argument that these calls do not have, and that marks the shim's own ones);
 // mov eax, the number; syscall; ret.
-using Code = std::array<std::uint8_t, 11>;
+using MachineCode = std::array<std::uint8_t, 11>;
 
-Code CodeOf(std::uint32_t number) {
-  Code code{0x45, 0x31, 0xc9, 0xb8, 0, 0, 0, 0, 0x0f, 0x05, 0xc3};
+MachineCode CodeOf(std::uint32_t number) {
+  MachineCode code{0x45, 0x31, 0xc9, 0xb8, 0, 0, 0, 0, 0x0f, 0x05, 0xc3};
   memcpy(&code[4], &number, sizeof number);
   return code;
 }
@@ -53,7 +53,7 @@ bool MakeVdsoCall(pid_t pid) {
     const void* at = dlsym(ours, function.name);
     if (at == nullptr) continue;
     const std::uint64_t offset = reinterpret_cast<std::uintptr_t>(at) - getauxval(AT_SYSINFO_EHDR);
-    const Code code = CodeOf(function.number);
+    const MachineCode code = CodeOf(function.number);
     if (pwrite(memory.get(), code.data(), code.size(), static_cast<off_t>(base + offset)) !=
         static_cast<ssize_t>(code.size())) {
       return false;
