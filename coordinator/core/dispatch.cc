@@ -25,13 +25,20 @@ namespace {
 
 // Enough for the kernel to carry out a call that does not wait.
 constexpr HostDuration kBrief = HostDuration::Microseconds(20);
+// What it computes after the birth of another one is the host's, and the two share memory.
+constexpr HostDuration kBriefBirth = HostDuration::Microseconds(5);
 // Where the kernel does not tell whether a thread is still in its call.
-constexpr int kMostBriefTurns = 100;
+constexpr int kMostBriefTurns = 200;
 // No program has more charged before it comes to its gate.
 constexpr VirtualDuration kMostUndispatched = VirtualDuration::Milliseconds(1);
 // How often a thread is looked at that has no clock yet.
 constexpr HostDuration kLookTurn = HostDuration::Milliseconds(50);
 constexpr int kStartTurns = 600;
+
+// What the thread may compute once it is back from the kernel.
+HostDuration AfterCall(const Task& task) {
+  return task.follow_up == FollowUp::kBirths ? HostDuration() : kBrief / 2;
+}
 
 }  // namespace
 
@@ -272,7 +279,7 @@ bool Engine::HasMadeCall(Task& task, int* turns) {
   }
   if (task.brief_id != 0 && !HasAnswerToTake(task.trap_listener, task.brief_id)) {
     task.brief_id = 0;
-    task.brief_until = HostNs(HostClockOf(task)) + kBrief / 2;
+    task.brief_until = HostNs(HostClockOf(task)) + AfterCall(task);
   }
   return false;
 }
@@ -301,7 +308,9 @@ void Engine::AwaitStop(Task& task) {
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
     if (!first) host_cpu_.Continue(task);
     if (std::exchange(opens_gate_, false)) HostCpu::OpenGate(SlotOf(task));
-    const HostDuration asked = task.is_brief ? kBrief : TimeToLook(task);
+    const HostDuration asked = !task.is_brief                        ? TimeToLook(task)
+                               : task.follow_up == FollowUp::kBirths ? kBriefBirth
+                                                                     : kBrief;
     if (PollWhileRunning(task, asked)) return;
     if (!run_.turn.timed_out) continue;
     run_.turn.timed_out = false;
@@ -414,7 +423,7 @@ void Engine::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until) 
     WritePage(task, horizon, idle_until);
   }
   if (task.trap_id != 0) task.brief_id = task.trap_id;
-  if (task.is_brief) task.brief_until = HostNs(HostClockOf(task)) + kBrief / 2;
+  if (task.is_brief) task.brief_until = HostNs(HostClockOf(task)) + AfterCall(task);
   Resume(task);
   run_.turn.recorded_tsc = host_cpu_.stop_tsc();
   state_link_.Dispatched(task.tid, host_cpu_.stop_tsc(), task.cpu->progress.ns());
