@@ -11,7 +11,7 @@ complain() {
 }
 
 count=100
-# ZeroMQ looks at its clock only where rdtsc has gone on; the Go runtime of nats-server schedules by rdtsc, too. Neither repeats.
+# ZeroMQ looks at its clock only where rdtsc has gone on, and nats-server (Go) did not repeat, for a cause that is not known: neither is compared.
 repeats=true
 [[ $name != zeromq && $name != nats ]] || repeats=false
 case $name in
