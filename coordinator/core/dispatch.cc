@@ -25,7 +25,7 @@ namespace {
 
 // Enough for the kernel to carry out a call that does not wait.
 constexpr HostDuration kBrief = HostDuration::Microseconds(20);
-// What it computes after the birth of another one is the host's, and the two share memory.
+// What it computes after the birth of another thread is the host's, and the two share memory.
 constexpr HostDuration kBriefBirth = HostDuration::Microseconds(5);
 // Where the kernel does not tell whether a thread is still in its call.
 constexpr int kMostBriefTurns = 200;
@@ -35,10 +35,14 @@ constexpr VirtualDuration kMostUndispatched = VirtualDuration::Milliseconds(1);
 constexpr HostDuration kLookTurn = HostDuration::Milliseconds(50);
 constexpr int kStartTurns = 600;
 
-// What the thread may compute once it is back from the kernel.
-HostDuration AfterCall(const Task& task) {
-  return task.follow_up == FollowUp::kBirths ? HostDuration() : kBrief / 2;
+bool MakesThread(const Task& task) {
+  return task.follow_up == FollowUp::kBirths &&
+         std::all_of(task.births.begin(), task.births.end(),
+                     [](const Birth& birth) { return birth.call.MakesThread(); });
 }
+
+// What the thread may compute once it is back from the kernel.
+HostDuration AfterCall(const Task& task) { return MakesThread(task) ? HostDuration() : kBrief / 2; }
 
 }  // namespace
 
@@ -308,9 +312,8 @@ void Engine::AwaitStop(Task& task) {
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
     if (!first) host_cpu_.Continue(task);
     if (std::exchange(opens_gate_, false)) HostCpu::OpenGate(SlotOf(task));
-    const HostDuration asked = !task.is_brief                        ? TimeToLook(task)
-                               : task.follow_up == FollowUp::kBirths ? kBriefBirth
-                                                                     : kBrief;
+    const HostDuration brief = MakesThread(task) ? kBriefBirth : kBrief;
+    const HostDuration asked = task.is_brief ? brief : TimeToLook(task);
     if (PollWhileRunning(task, asked)) return;
     if (!run_.turn.timed_out) continue;
     run_.turn.timed_out = false;
