@@ -109,11 +109,14 @@ check() {  # NAME WANTED_NS COMMAND...
   for ((i = 0; i < rounds; ++i)); do
     said=$(timeout 60 "$tcsim" exec --accounting fixed -- "$@") || fail "$name, fixed: $said"
     expect_ns "$name, fixed" "$wanted" "$said"
-    [[ $said == "${first:=$said}" ]] || fail "$name: $said, and $first before"
+    ((${first:=$said} - said <= apart && said - first <= apart)) || fail "$name: $said, and $first before"
   done
 }
 
+# Its maker computes for some microseconds beside the newborn thread, and has Python's lock by then or not.
+apart=10000
 check "a thread by a handle" 800000000 python3 "$work/by_handle.py"
+apart=0
 found=0
 for compiler in g++ clang++; do
   # What does not run natively (on a kernel that lays memory out in another way) is not to be had here.
