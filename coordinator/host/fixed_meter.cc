@@ -38,8 +38,7 @@ void FixedMeter::SetRates(const MeteredThread& thread, const SetCosts& costs,
       costs.allocation.has_value() ? costs.allocation->ns() : shm::kUsualAllocationCost;
 }
 
-std::uint64_t FixedMeter::Begin(MeteredThread& thread, std::uint64_t tsc, bool, bool is_silent) {
-  thread.is_silent = is_silent;
+std::uint64_t FixedMeter::Begin(MeteredThread& thread, std::uint64_t tsc, bool, bool) {
   thread.next_look = kLookAtSilentEvery;
   if (HasMadeCalls(thread, shm::ReadClockAt(*thread.page, tsc))) thread.silent_from_ns = -1;
   return tsc;

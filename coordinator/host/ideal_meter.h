@@ -15,6 +15,12 @@ class IdealMeter final : public FixedMeter {
   void SetRates(const MeteredThread& thread, const SetCosts&, ClockGrant& grant) const override {
     FixedMeter::SetRates(thread, {.call = {}, .allocation = VirtualDuration()}, grant);
   }
+  std::uint64_t Begin(MeteredThread& thread, std::uint64_t tsc, bool from_gate,
+                      bool is_silent) override {
+    thread.silent_looks = 0;
+    thread.is_silent = is_silent;
+    return FixedMeter::Begin(thread, tsc, from_gate, is_silent);
+  }
   HostDuration TimeToLook(MeteredThread& thread, std::uint64_t, ProgramTime) override {
     return thread.is_silent ? kLookAgainEvery : kLookEvery;
   }

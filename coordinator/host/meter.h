@@ -43,15 +43,17 @@ struct MeteredThread {
   UncheckedRuns unchecked_runs;       // by the coordinator
   std::uint64_t asked_tsc = 0;        // when it was last said how long it may run,
   HostDuration asked;                 // and how long
-  // Under set costs (fixed_meter.h): what it had been charged when it was last looked at; how many
-  // looks in a row have found it there; what its CPU clock said when it was first found there, or
-  // charged for it, -1: it has not been; and when it is looked at next.
+  // Under set costs (fixed_meter.h): what it had been charged when it was last looked at; what its
+  // CPU clock said when it was first found there, or charged for it, -1: it has not been; and when
+  // it is looked at next.
   std::int64_t silent_cpu_ns = 0;
-  int silent_looks = 0;
   std::int64_t silent_from_ns = -1;
   HostDuration next_look;
   bool pays_for_silence = false;  // its client is known to compute for long without a call
-  bool is_silent = false;         // on an ideal robot: it has been found so
+  // On an ideal robot (ideal_meter.h): how many looks it has had in this dispatch; and whether it
+  // has been found silent.
+  int silent_looks = 0;
+  bool is_silent = false;
 
   // Host time and virtual time are made of each other here only.
   HostDuration OnHost(VirtualDuration computed) const {
