@@ -1,5 +1,6 @@
 #include "libtcs_preload/attach.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <stddef.h>
 #include <string.h>
@@ -30,7 +31,8 @@ constexpr int kWantedFd = 960;  // out of the way of programs that count descrip
 // that are kept stay beyond it.
 class MoreDescriptors {
  public:
-  MoreDescriptors() {
+  explicit MoreDescriptors(bool wanted) {
+    if (!wanted) return;
     RawSyscall(SYS_prlimit64, 0, RLIMIT_NOFILE, 0, Arg(&before_));
     rlimit64 more{before_.rlim_cur + kMore, before_.rlim_max};
     if (more.rlim_max < more.rlim_cur) more.rlim_max = more.rlim_cur;
@@ -48,8 +50,20 @@ class MoreDescriptors {
  private:
   static constexpr rlim64_t kMore = 8;
   rlimit64 before_{};
-  bool has_more_;
+  bool has_more_ = false;
 };
+
+// Raises no limit unless it must: another thread that came meanwhile would find it raised, and
+// leave it so.
+long OpenSocket() {
+  const auto open = [] {
+    return RawSyscall(SYS_socket, AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+  };
+  const long fd = open();
+  if (fd != -EMFILE) return fd;
+  const MoreDescriptors more(true);
+  return open();
+}
 
 int Connect() {
   sockaddr_un address{};
@@ -57,7 +71,7 @@ int Connect() {
   const std::size_t length = strlen(SocketName());
   if (length + 1 > sizeof address.sun_path) DieWithoutCoordinator("TCS_SOCKET is too long");
   memcpy(address.sun_path + 1, SocketName(), length);
-  const long fd = RawSyscall(SYS_socket, AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+  const long fd = OpenSocket();
   if (fd < 0) DieWithoutCoordinator("this process has no free descriptor for the connection to it");
   const long size = static_cast<long>(offsetof(sockaddr_un, sun_path) + 1 + length);
   // A program in a network of its own, as a sandbox has it, finds nobody under the name: its call
@@ -158,7 +172,7 @@ void Attach(GuestThread& thread) {
   // What it has inherited, or an earlier attach has left, is this process's own only if one of its
   // threads has a place already.
   const bool is_first = g_process->mode != ProcessState::kAttached;
-  const MoreDescriptors more;
+  const MoreDescriptors more(is_first);
   const int socket = Connect();
   const Received received =
       Exchange(socket, is_first ? shm::AttachWants::kAll : shm::AttachWants::kSlot);
