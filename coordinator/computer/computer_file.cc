@@ -25,14 +25,10 @@ std::vector<std::string_view> PartsOf(std::string_view path) {
   return parts;
 }
 
-bool BeginsWith(std::string_view path, std::string_view with) {
-  return path.substr(0, with.size()) == with;
-}
-
 // What follows the folder's name; none: the path is not in there.
 std::optional<std::string> Within(std::string_view path, std::string_view folder) {
   if (path == folder) return std::string();
-  if (!BeginsWith(path, folder) || path[folder.size()] != '/') return std::nullopt;
+  if (!path.starts_with(folder) || path[folder.size()] != '/') return std::nullopt;
   return std::string(path.substr(folder.size() + 1));
 }
 
@@ -102,7 +98,7 @@ std::string PlainName(std::string_view path) {
 
 std::optional<ComputerFile> ComputerFileAt(std::string_view path, pid_t own_process,
                                            pid_t own_thread) {
-  if (BeginsWith(path, kProc)) {
+  if (path.starts_with(kProc)) {
     if (path == "/proc/cpuinfo") return ComputerFile{.kind = Kind::kProcessorTable};
     if (path == "/proc/stat") return ComputerFile{.kind = Kind::kCounters};
     if (path == "/proc/uptime") return ComputerFile{.kind = Kind::kUptime};
@@ -114,7 +110,7 @@ std::optional<ComputerFile> ComputerFileAt(std::string_view path, pid_t own_proc
   if (auto rest = Within(path, kNodes)) {
     return ComputerFile{.kind = Kind::kNodeFolder, .rest = *std::move(rest)};
   }
-  if (BeginsWith(path, kGroups)) return GroupFileAt(path.substr(path.rfind('/') + 1));
+  if (path.starts_with(kGroups)) return GroupFileAt(path.substr(path.rfind('/') + 1));
   return std::nullopt;
 }
 

@@ -4,11 +4,10 @@
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/time.h>
-#include <sys/wait.h>
 
 #include <vector>
 
-#include "tests/conformance/conformance.h"
+#include "tests/conformance/other_process.h"
 
 using namespace conformance;
 
@@ -53,22 +52,6 @@ void Fill(int fd) {
   while (send(fd, data.data(), data.size(), MSG_DONTWAIT) > 0) {
   }
   EXPECT(errno == EAGAIN, "%s", strerror(errno));
-}
-
-template <class Child>
-pid_t Start(Child child) {
-  const pid_t pid = fork();
-  if (pid == 0) {
-    child();
-    _exit(0);
-  }
-  EXPECT(pid > 0, "%s", strerror(errno));
-  return pid;
-}
-
-void ExpectWell(pid_t pid) {
-  int status = 0;
-  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "the other process: %#x", status);
 }
 
 // Closes, or has another file put in its place.

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "tests/conformance/conformance.h"
+#include "tests/conformance/other_process.h"
 
 using namespace conformance;
 
@@ -52,22 +52,6 @@ Pair Connected() {
   EXPECT(there >= 0, "%s", strerror(errno));
   close(listener);
   return {here, there};
-}
-
-template <class Child>
-pid_t Start(Child child) {
-  const pid_t pid = fork();
-  if (pid == 0) {
-    child();
-    _exit(0);
-  }
-  EXPECT(pid > 0, "%s", strerror(errno));
-  return pid;
-}
-
-void ExpectWell(pid_t pid) {
-  int status = 0;
-  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "the other process: %#x", status);
 }
 
 void Put(int fd, std::int64_t value) {
