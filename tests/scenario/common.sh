@@ -23,6 +23,8 @@ new_in_shm() {
 # The file of the first library of the loader's that matches; nothing where there is none. The whole list is read: who
 # stops reading ends `ldconfig` by SIGPIPE, and with it, under pipefail, the test.
 library() { ldconfig -p | awk -v pattern="$1" '$0 ~ pattern && !found { found = 1; print $NF }'; }
+# What a run says, without that it waits for a processor, which it may have to beside other tests.
+without_waits() { sed '/^tcsim: other runs of tcsim have/d'; }
 # Starts a function beside what goes on already. `all_done` waits for all of these, and ends the test if one has failed.
 started=()
 beside() { "$@" & started+=("$!"); }

@@ -11,7 +11,7 @@ repeats() {
   shift 2
   plan() {
     "$tcsim" exec --accounting fixed --cores "$cores" --allocation-cost "$cost" -- \
-      "$build/bin/ompl_planners" "$@" 2>&1 | grep -v 'tcsim: other runs'
+      "$build/bin/ompl_planners" "$@" 2>&1 | without_waits
   }
   first=$(plan "$@") || fail "$*: $first"
   second=$(plan "$@")

@@ -11,7 +11,7 @@ like_native() {
   for accounting in measured fixed; do
     said=$("$tcsim" exec --accounting "$accounting" -- bash -c "$1" 2>&1 </dev/null
            echo "exit status $?")
-    said=$(grep -v 'tcsim: other runs' <<<"$said")
+    said=$(without_waits <<<"$said")
     [[ $said == "$wanted" ]] || fail "$accounting: '$1' says '$said' instead of '$wanted'"
   done
 }

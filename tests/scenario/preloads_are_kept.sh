@@ -53,7 +53,7 @@ lists() {  # PATTERN COMMAND...
   local says pattern=$1
   shift
   says=$(timeout 30 "$@" 2>&1)
-  says=$(grep -v '^tcsim: other runs' <<<"$says")
+  says=$(without_waits <<<"$says")
   [[ $says =~ ^1000\ $pattern$ ]] || fail "'$says' instead of '1000 $pattern': $*"
 }
 lists "$shim" "$tcsim" exec -- python3 -c "$slept"

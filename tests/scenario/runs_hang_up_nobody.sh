@@ -15,7 +15,7 @@ kill -9 $stopped 2>/dev/null; true'
 says() {  # WHAT IT SAYS COMMAND...
   local wanted=$1 said
   shift
-  said=$(setsid --wait timeout 60 bash -c "$script" script "$@" 2>&1 | grep -v 'tcsim: other runs')
+  said=$(setsid --wait timeout 60 bash -c "$script" script "$@" 2>&1 | without_waits)
   [[ $said == "$wanted" ]] || fail "$*: $said"
 }
 # That the kernel does so.

@@ -36,6 +36,6 @@ native=$(python3 sandboxed.py ask | cut -d' ' -f2)
 wanted=$(printf 'version %d\nis kept from links\na thread\na child' "$((native < 5 ? native : 5))")
 for accounting in measured fixed; do
   said=$("$tcsim" exec --accounting "$accounting" -- python3 sandboxed.py 2>&1) || fail "$accounting: $said"
-  said=$(grep -v 'tcsim: other runs' <<<"$said")
+  said=$(without_waits <<<"$said")
   [[ $said == "$wanted" ]] || fail "$accounting: '$said' instead of '$wanted'"
 done

@@ -9,7 +9,7 @@ expect() {
   local wanted=$1 said accounting
   for accounting in ${only:-measured fixed}; do
     said=$("$tcsim" exec --accounting "$accounting" --allocation-cost 0 -- \
-      bash -c "$begin; exec bash -c \"\$1\"" bash "$2" 2>&1 | grep -v 'tcsim: other runs')
+      bash -c "$begin; exec bash -c \"\$1\"" bash "$2" 2>&1 | without_waits)
     [[ $said == "$wanted" ]] || fail "$accounting: '$2' says '$said' instead of '$wanted'"
   done
 }
