@@ -12,6 +12,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/linger.h"
+#include "libtcs_preload/outside.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/timer_fds.h"
 
@@ -30,6 +31,7 @@ void NoteChange() {
 // What was open for others to see is about to be closed.
 void BeginClosing(int fd) {
   NoteChange();
+  NoteCloses(fd);
   if (g_header == nullptr || g_header->gates_only == 0 || !CanWait(fd)) return;
   if (GuestThread* t = Current(); t != nullptr) BeginChange(*t);
 }

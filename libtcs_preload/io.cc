@@ -15,6 +15,7 @@
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
+#include "libtcs_preload/outside.h"
 #include "libtcs_preload/pieces.h"
 #include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -73,6 +74,7 @@ ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
       },
       whole);
   if (done > 0) NoteReceived(*t);
+  if (done >= 0) NoteTakes(*t, fd);
   PassOn(*t);
   return ToErrno(done);
 }
@@ -190,6 +192,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
     BeginTaking(*t, from, true);
     const long result = try_it(from);
     if (result > 0 && Takes(flags)) {
+      NoteTakes(*t, from);
       NoteReceived(*t);
       if (NotesActivity()) NoteDatagramsReceived(*t, from, static_cast<std::uint32_t>(result));
     }
@@ -199,14 +202,16 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   if (timeout != nullptr && !CopyIn(&limit, timeout)) return Fail(EFAULT);
   if (!IsValid(limit)) return Fail(EINVAL);
   const bool never_waits = ReceivesAtOnce(fd, flags) || IsNonBlocking(fd);
-  if (never_waits || PollNow(fd, POLLIN)) {
+  OutsidePlace* place = OutsideOf(fd);
+  if (never_waits && IsHiddenFromLook(*t, fd)) return Fail(EAGAIN);
+  if (never_waits || (!IsHidden(*t, place) && PollNow(fd, POLLIN))) {
     // All that are there come along, so all that are from before must be there.
     HoldForRead(*t);
     const long result = take(fd);
     if (never_waits || result != -EAGAIN) {
       return static_cast<int>(PassOnAfter(*t, result));
     }
-  } else if (!WantsMore(fd)) {
+  } else if (!WantsMore(fd) && place == nullptr) {
     if (const long answer = try_it(fd); answer != -EAGAIN) return static_cast<int>(ToErrno(answer));
   }
   std::int64_t deadline = SocketDeadline(*t, fd, SO_RCVTIMEO);

@@ -16,6 +16,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/kernel_wait.h"
 #include "libtcs_preload/keys.h"
+#include "libtcs_preload/outside.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -81,9 +82,11 @@ int OpenAt(int folder, const char* path, int flags, mode_t mode) {
   if (MayBeOfComputer(folder, path, flags)) {
     return static_cast<int>(ToErrno(OpenOfComputer(folder, path, flags)));
   }
-  return static_cast<int>(ToErrno(Opening(folder, path, flags, true, [&] {
+  const long fd = Opening(folder, path, flags, true, [&] {
     return RawSyscall(SYS_openat, folder, Arg(path), flags, static_cast<long>(mode));
-  })));
+  });
+  if (fd >= 0 && IsDeviceOutside(path)) NoteOpens(static_cast<int>(fd));
+  return static_cast<int>(ToErrno(fd));
 }
 
 // Only a mode with + opens for both.

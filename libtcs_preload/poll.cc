@@ -15,6 +15,7 @@
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/local_sockets.h"
+#include "libtcs_preload/outside.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/select_sets.h"
 #include "libtcs_preload/signal_mask.h"
@@ -96,9 +97,11 @@ int PollNs(GuestThread& t, pollfd* fds, nfds_t count, std::int64_t timeout_ns,
            const sigset_t* mask) {
   if (!IsReadableMask(mask)) return Fail(EFAULT);
   auto probe = [&] {
-    return RawSyscall(SYS_ppoll, Arg(fds), static_cast<long>(count), Arg(&kNow), 0, 0);
+    const long found = RawSyscall(SYS_ppoll, Arg(fds), static_cast<long>(count), Arg(&kNow), 0, 0);
+    return WithoutHidden(t, fds, count, found);
   };
   auto hold = [&] {
+    BeginLooks(t, fds, count);
     if (!AreSafeLooks(t, fds, count, NowNs(t))) HoldForRead(t);
   };
   PolledFiles files(t);
@@ -115,14 +118,19 @@ int SelectNs(GuestThread& t, int n, fd_set* r, fd_set* w, fd_set* e, std::int64_
   if (sets.error() != 0) return Fail(sets.error());
   bool has_waited = false;
   PolledFiles files(t);
-  auto probe = [&] { return has_waited ? sets.ProbeAgain() : sets.Probe(); };
+  auto probe = [&] { return sets.WithoutHidden(t, has_waited ? sets.ProbeAgain() : sets.Probe()); };
   auto wait = [&](std::int64_t deadline, unsigned long signals) {
     has_waited = true;
     unsigned long count = 0;
     const pollfd* wanted = sets.Wanted(&count);
     return files.Wait(wanted, count, deadline, signals);
   };
-  auto hold = [&] { HoldForRead(t); };
+  auto hold = [&] {
+    unsigned long count = 0;
+    const pollfd* wanted = sets.Wanted(&count);
+    BeginLooks(t, wanted, count);
+    HoldForRead(t);
+  };
   const int found = CallWithMask(t, timeout_ns, mask, true, probe, hold, probe, wait);
   if (found < 0) return found;
   const int error = sets.PutBack();
@@ -147,8 +155,16 @@ int EpollNs(GuestThread& t, int epfd, epoll_event* events, int max, std::int64_t
   bool again = false;
   CallFile file(t, epfd, tcs::shm::KeepFiles::kForSet);
   const int found = CallWithMask(
-      t, timeout_ns, mask, false, [&] { return PeekEvents(epfd); }, [&] { HoldForRead(t); },
-      [&] { return RawSyscall(SYS_epoll_wait, file.fd(), Arg(events), max, 0); },
+      t, timeout_ns, mask, false, [&] { return PeekEvents(epfd); },
+      [&] {
+        BeginLookIntoSet(t, epfd);
+        HoldForRead(t);
+      },
+      [&] {
+        const HiddenMembers hidden(t, file.fd());
+        const long there = RawSyscall(SYS_epoll_wait, file.fd(), Arg(events), max, 0);
+        return hidden.TakeOut(events, there);
+      },
       [&](std::int64_t deadline, unsigned long signals) {
         return file.Wait(POLLIN, deadline,
                          {OneEvent::kForTheLast, std::exchange(again, true), signals});

@@ -16,6 +16,7 @@
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/local_sockets.h"
+#include "libtcs_preload/outside.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/receipts.h"
 #include "libtcs_preload/tcp.h"
@@ -156,11 +157,33 @@ ssize_t WaitAndRead(GuestThread& t, int fd, Take& take) {
   }
 }
 
+// What comes from outside of the run is there when it is to be seen.
+template <class Take>
+ssize_t ReadFromOutside(GuestThread& t, int fd, Reads reads, OutsidePlace* place, Take& take) {
+  ssize_t got = 0;
+  if (reads.dont_wait || IsNonBlocking(fd)) {
+    if (IsHiddenFromLook(t, fd)) return Fail(EAGAIN);
+    got = ToErrno(take.Make(fd));
+  } else {
+    if (take.IsSocket() && WantsMore(fd)) take.UseNoForm();
+    const long there = IsHidden(t, place) ? -EAGAIN : take.TryIt(fd);
+    got = there != -EAGAIN ? PassOnAfter(t, there) : WaitAndRead(t, fd, take);
+  }
+  if (got >= 0 && reads.takes) NoteTakes(t, fd);
+  return got;
+}
+
 template <class Look, class Try, class Call>
 ssize_t ReadLike(int fd, Reads reads, Forms<Look, Try, Call> forms) {
   const Entered t;
   pthread_testcancel();
   if (t == nullptr) return ToErrno(forms.call(fd));
+  if (OutsidePlace* place = OutsideOf(fd); place != nullptr) {
+    FdKind kind = FdKind::kOther;
+    CanWait(fd, &kind);
+    Taker take(*t, kind, reads.takes, forms);
+    return ReadFromOutside(*t, fd, reads, place, take);
+  }
   ssize_t got = 0;
   FdKind kind = FdKind::kSocket;
   const int type = reads.is_receive ? TypeOfSocket(fd) : -1;

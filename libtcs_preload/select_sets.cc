@@ -6,6 +6,10 @@
 #include <sys/mman.h>
 #include <sys/time.h>
 
+#include <algorithm>
+#include <iterator>
+
+#include "libtcs_preload/outside.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
 
@@ -137,6 +141,26 @@ long SelectSets::ProbeAgain() {
       if ((fds_[i].revents & kEvents[set]) == 0) continue;
       bit(found_, set, fds_[i].fd) |= std::uint64_t{1} << (fds_[i].fd % kWordBits);
       ++found;
+    }
+  }
+  return found;
+}
+
+// To read, and what is exceptional.
+long SelectSets::WithoutHidden(GuestThread& thread, long found) {
+  if (found <= 0 || !IsAnythingOutside()) return found;
+  constexpr int kFromOutside[] = {0, 2};
+  for (std::size_t fd = 0; fd < count_; ++fd) {
+    const std::uint64_t bit = std::uint64_t{1} << (fd % kWordBits);
+    const auto word = [&](int set) -> std::uint64_t& { return Set(found_, set)[fd / kWordBits]; };
+    const bool is_found =
+        std::any_of(std::begin(kFromOutside), std::end(kFromOutside),
+                    [&](int set) { return user_[set] != nullptr && (word(set) & bit) != 0; });
+    if (!is_found || !IsHidden(thread, OutsideOf(static_cast<int>(fd)))) continue;
+    for (const int set : kFromOutside) {
+      if (user_[set] == nullptr || (word(set) & bit) == 0) continue;
+      word(set) &= ~bit;
+      --found;
     }
   }
   return found;

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "libtcs_preload/guest.h"
+
 namespace tcs::preload {
 
 class SelectSets {
@@ -25,6 +27,9 @@ class SelectSets {
   // The same once the call has waited: what has been closed meanwhile is no error, but ready, and
   // the call is over.
   long ProbeAgain();
+
+  // What such a probe has found, less what is hidden (outside.h).
+  long WithoutHidden(GuestThread& thread, long found);
 
   // The descriptors of all three, as poll takes them. Valid while this object lives.
   const pollfd* Wanted(unsigned long* count);

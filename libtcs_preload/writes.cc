@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <unistd.h>
+#include <x86gprintrin.h>
 
 #include "libtcs_preload/call_file.h"
 #include "libtcs_preload/datagram_notes.h"
@@ -17,6 +18,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/local_sockets.h"
+#include "libtcs_preload/outside.h"
 #include "libtcs_preload/own_receivers.h"
 #include "libtcs_preload/pieces.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -64,6 +66,7 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   const bool at_once = !AreSound(iov, count) || IsNonBlocking(fd);
   Rest rest(iov, at_once ? 0 : count);
   if (NotesActivity()) NoteDatagram(*t, fd, nullptr, 0);
+  const std::uint64_t begun_tsc = __rdtsc();
   const long result = rest.bytes() == 0
                           ? whole(fd)
                           : TransferAll(*t, fd, POLLOUT, SO_SNDTIMEO, rest, WritePart, whole);
@@ -71,6 +74,7 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   if (result > 0 && AnybodyWaits() && IsTerminal(fd)) {
     TellChanged(*t, tcs::shm::WaitKey::kTerminals, 0);
   }
+  if (result > 0) NoteAsks(*t, fd, begun_tsc);
   return ToErrno(result);
 }
 
@@ -115,6 +119,7 @@ ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* 
   const bool was_in_call = t->in_call;
   const int receiver = HoldToSend(*t, fd, message);
   if (NotesActivity()) NoteDatagram(*t, fd, message.msg_name, message.msg_namelen);
+  const std::uint64_t begun_tsc = __rdtsc();
   long posted = 0;
   ssize_t sent;
   if (*may_post && Post(*t, fd, receiver, message, flags, &posted)) {
@@ -133,6 +138,7 @@ ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* 
     TakeBackDatagram(*t, fd, message.msg_name, message.msg_namelen);
     errno = error;
   }
+  if (sent >= 0 && posted == 0) NoteAsks(*t, fd, begun_tsc);
   return sent;
 }
 
@@ -258,11 +264,17 @@ TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
   if (t != nullptr && size >= sizeof family && CanRead(address, sizeof family)) {
     family = address->sa_family;
   }
+  const bool is_internet = family == AF_INET || family == AF_INET6;
+  long result = 0;
   if (family == AF_UNIX && !IsNonBlocking(fd)) {
-    return static_cast<int>(ToErrno(ConnectLocally(*t, fd, address, size)));
+    result = ConnectLocally(*t, fd, address, size);
+  } else if (is_internet && !IsNonBlocking(fd)) {
+    result = ConnectFar(*t, fd, address, size);
+  } else {
+    result = RawSyscall(SYS_connect, fd, Arg(address), size);
   }
-  if ((family == AF_INET || family == AF_INET6) && !IsNonBlocking(fd)) {
-    return static_cast<int>(ToErrno(ConnectFar(*t, fd, address, size)));
+  if ((is_internet || family == AF_UNIX) && (result == 0 || result == -EINPROGRESS)) {
+    NoteConnects(*t, fd);
   }
-  return static_cast<int>(ToErrno(RawSyscall(SYS_connect, fd, Arg(address), size)));
+  return static_cast<int>(ToErrno(result));
 }

@@ -1,8 +1,9 @@
 // The shared memory: the contract between the coordinator and the shim inside each client.
 //
 //   of the run:            +-----------+----------+--------------+--------------+
-//   the coordinator's      | RunHeader | IpcTimes | OwnReceivers | LocalSockets | (own_receivers.h,
-//                          +-----------+----------+--------------+--------------+  local_sockets.h)
+//   the coordinator's      | RunHeader | IpcTimes | OwnReceivers | LocalSockets | OutsideFiles |
+//                          +-----------+----------+--------------+--------------+--------------+
+//                          (own_receivers.h, local_sockets.h, outside_files.h)
 //   of each process:       +---------------+---------------+-----
 //   its and the            | ThreadSlot[0] | ThreadSlot[1] | ...
 //   coordinator's          +---------------+---------------+-----
@@ -35,7 +36,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 24;
+inline constexpr std::uint32_t kVersion = 25;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -115,6 +116,8 @@ enum class NotificationKind : std::uint32_t {
                   // robot has looked for the last time without waiting for others
   kChildUsage = 38,  // args[0]: pid of a child that has ended; reply[0]: what it and its own
                      // children were charged, ns; -1: not known
+  kOutside = 39,     // of a file by which the program may meet what is outside of the run; args: an
+                     // OutsideEvent, and what it says (outside_files.h)
 };
 
 // The signal by which the coordinator stops a thread that computes, where only gates keep threads

@@ -17,6 +17,7 @@
 
 #include "shm/layout.h"
 #include "shm/local_sockets.h"
+#include "shm/outside_files.h"
 
 namespace tcs::shm {
 
@@ -90,12 +91,18 @@ struct PublishedRun {
   RunMemory run;
   OwnReceivers own_receivers;
   LocalSockets local_sockets;
+  OutsideFiles outside_files;
 };
 static_assert(offsetof(PublishedRun, own_receivers) == 131200);
 static_assert(offsetof(PublishedRun, local_sockets) == 245904);
+static_assert(offsetof(PublishedRun, outside_files) == 508048);
 
 inline const LocalSockets& LocalSocketsOf(const RunMemory& run) {
   return reinterpret_cast<const PublishedRun&>(run).local_sockets;
+}
+
+inline const OutsideFiles& OutsideFilesOf(const RunMemory& run) {
+  return reinterpret_cast<const PublishedRun&>(run).outside_files;
 }
 
 inline const OwnReceivers& OwnReceiversOf(const RunMemory& run) {

@@ -28,13 +28,37 @@ bool DescriptorWaits::Arm(int fd, std::uint32_t events, const Subject& subject,
   return true;
 }
 
-void DescriptorWaits::Add(Copy copy, const Subject& subject, awaited::Descriptors& watched) {
+void DescriptorWaits::Add(const Task& task, Copy copy, const Subject& subject,
+                          awaited::Descriptors& watched) {
   if (!copy.fd) return;
   const bool is_waited_for = copy.asked.events != 0;  // or is kept for the call only
-  const std::uint32_t events = copy.asked.events | EPOLLONESHOT;
-  if (is_waited_for && !Arm(copy.fd.get(), events, subject, watched)) return;
+  const bool is_hidden =
+      (copy.asked.events & EPOLLIN) != 0 && outside_.BeginsWait(task, copy.fd.get());
+  watched.has_hidden |= is_hidden;
+  std::uint32_t events = copy.asked.events;
+  if (is_hidden) {
+    events &= EPOLLOUT;
+    AddMembers(task, copy.fd.get(), subject, watched);
+  }
+  const bool is_armed = is_waited_for && events != 0;
+  if (is_armed && !Arm(copy.fd.get(), events | EPOLLONESHOT, subject, watched)) return;
   watched.fds.push_back(std::move(copy.fd));
   watched.asked.push_back(copy.asked);
+}
+
+// The set itself would tell of what is hidden, too. What of the others is there already the thread
+// has had, or it does not want it.
+void DescriptorWaits::AddMembers(const Task& task, int set, const Subject& subject,
+                                 awaited::Descriptors& watched) {
+  constexpr std::uint32_t kAsked = EPOLLIN | EPOLLOUT | EPOLLPRI | EPOLLRDHUP | EPOLLRDNORM;
+  for (const EpollEntry& entry : EntriesOf(set)) {
+    UniqueFd member = CopyOfDescriptor(*task.process, entry.fd);
+    const std::uint32_t events = entry.events & kAsked;
+    if (!member || events == 0 || outside_.IsHidden(member.get(), task.reached)) continue;
+    if (!Arm(member.get(), events | EPOLLET, subject, watched)) continue;
+    if (IsReady(member.get(), events)) watched.skips_in = reactor_.next_look();
+    watched.members.push_back(std::move(member));
+  }
 }
 
 awaited::Descriptors DescriptorWaits::Watch(const Task& task, const shm::WaitFd* fds,
@@ -43,7 +67,7 @@ awaited::Descriptors DescriptorWaits::Watch(const Task& task, const shm::WaitFd*
       .since = task.process->changes, .number = ++wait_counter_, .order = task.fds_order};
   const Subject subject = SubjectOf(task, watched);
   for (std::size_t i = 0; i < count; ++i) {
-    Add({fds[i], CopyOfDescriptor(*task.process, fds[i].fd)}, subject, watched);
+    Add(task, {fds[i], CopyOfDescriptor(*task.process, fds[i].fd)}, subject, watched);
   }
   return watched;
 }
@@ -52,7 +76,7 @@ awaited::Descriptors DescriptorWaits::Watch(const Task& task, std::vector<Copy> 
   awaited::Descriptors watched{
       .since = task.process->changes, .number = ++wait_counter_, .order = task.fds_order};
   const Subject subject = SubjectOf(task, watched);
-  for (Copy& copy : copies) Add(std::move(copy), subject, watched);
+  for (Copy& copy : copies) Add(task, std::move(copy), subject, watched);
   return watched;
 }
 
@@ -79,6 +103,20 @@ awaited::Descriptors DescriptorWaits::WatchKept(Task& task) {
     if (awaits_news && IsReady(fd, events)) watched.skips_in = reactor_.next_look();
   }
   return watched;
+}
+
+void DescriptorWaits::LookAgain(Task& task) {
+  auto* watched = task.Awaits<awaited::Descriptors>();
+  if (watched == nullptr || !watched->has_hidden) return;
+  const Subject subject = SubjectOf(task, *watched);
+  watched->has_hidden = false;
+  for (std::size_t i = 0; i < watched->fds.size(); ++i) {
+    const int fd = watched->fds[i].get();
+    const bool is_hidden = outside_.Hides(task, fd);
+    watched->has_hidden |= is_hidden;
+    if (watched->asked[i].events == 0 || is_hidden) continue;
+    Arm(fd, watched->asked[i].events | EPOLLONESHOT, subject, *watched);
+  }
 }
 
 void DescriptorWaits::GoBehind(Task& task, awaited::Descriptors& watched) {
@@ -108,6 +146,7 @@ awaited::Descriptors DescriptorWaits::WatchAsAsked(Task& task, const shm::Notifi
 // client's epoll set with a signalfd in it must not be polled by us when its wait is over: we have
 // other signals, and it would forget that there is one.
 void DescriptorWaits::Leave(const awaited::Descriptors& watched) {
+  for (const UniqueFd& fd : watched.members) reactor_.Remove(fd.get());
   const bool forgets = watched.has_terminal || watched.signals != 0 || watched.is_edge_armed;
   if (!forgets) return;
   for (const UniqueFd& fd : watched.fds) reactor_.Remove(fd.get());

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "coordinator/calls/outside_waits.h"
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/task.h"
@@ -18,7 +19,7 @@ namespace tcs {
 
 class DescriptorWaits {
  public:
-  explicit DescriptorWaits(Reactor& reactor) : reactor_(reactor) {}
+  DescriptorWaits(Reactor& reactor, OutsideWaits& outside) : reactor_(reactor), outside_(outside) {}
 
   // From now on the descriptors of the thread's process with these numbers are watched. One that
   // cannot be watched is left out: a file is always ready, and a closed descriptor reports nothing.
@@ -36,6 +37,8 @@ class DescriptorWaits {
   awaited::Descriptors WatchAsAsked(Task& task, const shm::Notification& note);
   // The wait is a new one, behind all others that want to take from the same descriptor.
   void GoBehind(Task& task, awaited::Descriptors& watched);
+  // What was hidden from the waiting thread may be no more (outside_waits.h).
+  void LookAgain(Task& task);
   // The wait is over.
   void Leave(const awaited::Descriptors& watched);
 
@@ -43,11 +46,13 @@ class DescriptorWaits {
   static Subject SubjectOf(const Task& task, const awaited::Descriptors& watched);
 
  private:
-  void Add(Copy copy, const Subject& subject, awaited::Descriptors& watched);
+  void Add(const Task& task, Copy copy, const Subject& subject, awaited::Descriptors& watched);
+  void AddMembers(const Task& task, int set, const Subject& subject, awaited::Descriptors& watched);
   // False if it cannot be watched.
   bool Arm(int fd, std::uint32_t events, const Subject& subject, awaited::Descriptors& watched);
 
   Reactor& reactor_;
+  OutsideWaits& outside_;
   std::uint32_t wait_counter_ = 0;
   std::uint64_t fds_order_counter_ = 0;
 };

@@ -143,6 +143,10 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       parts_.local_sockets.Reaches(task, static_cast<std::uint32_t>(note.args[0]));
       waker_.Hold(task, Kind::kWrite);
       break;
+    case Kind::kOutside:
+      if (parts_.outside.Handle(task, note)) waker_.Hold(task, Kind::kRead);
+      looks_again = true;
+      break;
     case Kind::kChildUsage:
       task.reply[0] = task.process->ended_children.ChargedNs(static_cast<pid_t>(note.args[0]));
       break;

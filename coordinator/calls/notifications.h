@@ -36,6 +36,7 @@ class Notifications {
     KernelObjectWaits& objects;
     DdsGateway& dds;
     LocalSockets& local_sockets;
+    OutsideWaits& outside;
   };
 
   Notifications(RunState& run, Waker& waker, Parts parts)

@@ -13,6 +13,7 @@
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/os/say.h"
 #include "coordinator/scenario/executable.h"
+#include "coordinator/scenario/load_outside.h"
 
 namespace tcs {
 
@@ -77,13 +78,18 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
     return Fail(error);
   }
   const std::vector<std::string>& command = arguments.command;
-  std::optional<VirtualDuration> call_cost, allocation_cost;
+  std::optional<VirtualDuration> call_cost, allocation_cost, outside_takes;
   if (const std::string error = TakeDuration("call-cost", arguments.call_cost, &call_cost);
       !error.empty()) {
     return Fail(error);
   }
   if (const std::string error = TakeDuration("allocation-cost", arguments.allocation_cost,
                                              &allocation_cost, Zero::kAllowed);
+      !error.empty()) {
+    return Fail(error);
+  }
+  if (const std::string error =
+          TakeDuration("outside-takes", arguments.outside_takes, &outside_takes);
       !error.empty()) {
     return Fail(error);
   }
@@ -103,6 +109,11 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
   client.patch_vdso = arguments.patch_vdso;
   client.dds = arguments.dds;
   if (call_cost.has_value()) client.fixed_call_cost = *call_cost;
+  for (const std::string& text : arguments.outside) {
+    const std::string mistake = TakeOutsideName(text, folder, &client.outside.names.emplace_back());
+    if (!mistake.empty()) return Fail("--outside '" + text + "' " + mistake);
+  }
+  if (outside_takes.has_value()) client.outside.takes = *outside_takes;
   if (allocation_cost.has_value()) client.fixed_allocation_cost = *allocation_cost;
   scenario.robots.push_back({"computer", arguments.cores, arguments.speed, {client}});
   options.on_notice = [](const std::string& notice) { Say(notice); };

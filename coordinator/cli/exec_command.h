@@ -18,6 +18,8 @@ struct ExecArguments {
   DdsTransport dds = DdsTransport::kEndpoints;
   std::string uptime;  // of the computer when the run begins, such as 20s; empty: as by default
   std::string date;    // when the run begins, such as 2005-03-18; the same
+  std::vector<std::string> outside;  // names of what is waited for outside of the run
+  std::string outside_takes;         // under fixed accounting; as by default where it is empty
 };
 
 // Runs the command alone on a computer, without dynamics; the exit status is the command's own.

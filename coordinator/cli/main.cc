@@ -237,6 +237,18 @@ int main(int argc, char** argv) {
           "how programs that use Cyclone DDS reach each other; endpoints: in shared memory "
           "(default); sockets: by their own protocol")
       ->check(CLI::IsMember({"endpoints", "sockets"}));
+  std::vector<std::string> outside;
+  exec->add_option("--outside", outside,
+                   "NAME: a file (a FIFO, a terminal, a device) or a socket (its path, @NAME, or "
+                   "ADDRESS:PORT) by which what is outside of the run answers in real time; "
+                   "repeatable. Devices, and peers outside to which the program has sent "
+                   "something, need no name")
+      ->expected(1)
+      ->type_size(1);
+  std::string outside_takes;
+  exec->add_option("--outside-takes", outside_takes,
+                   "TIME: how long each answer from outside takes under --accounting fixed "
+                   "(default: 5ms)");
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
 
@@ -411,7 +423,7 @@ int main(int argc, char** argv) {
                ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost,
                                    dds == "sockets" ? tcs::DdsTransport::kSockets
                                                     : tcs::DdsTransport::kEndpoints,
-                                   uptime, date},
+                                   uptime, date, outside, outside_takes},
                                   options)
                : tcs::FlushStdout(tcs::RunCommand(arguments, options));
   });

@@ -15,6 +15,7 @@
 #include "coordinator/expect/expect_json.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/say.h"
+#include "coordinator/text/spoken.h"
 #include "simbody_bridge/engines.h"
 
 namespace tcs {
@@ -70,6 +71,18 @@ void PrintPace(const PaceReport& pace) {
         pace.pace, Seconds(pace.behind_ns), Seconds(pace.late_ns));
 }
 
+// Nothing of clients that had no answers.
+void PrintOutside(const std::vector<ClientReport>& clients) {
+  for (const ClientReport& c : clients) {
+    const std::int64_t answers = c.outside.answers;
+    if (answers == 0) continue;
+    Print("{} waited {:.3f} s for {} from outside of the run, {} each\n", c.name,
+          c.outside.waited.seconds(),
+          answers == 1 ? "an answer" : fmt::format("{} answers", answers),
+          Spoken(c.outside.waited.ns() / answers));
+  }
+}
+
 }  // namespace
 
 double OverheadPercent(const RunReport& r) {
@@ -93,6 +106,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   }
   for (const std::string& sentence : Shortened(r.verdict)) Print("! {}\n", sentence);
   Print("{}", ClientTable(r.clients));
+  PrintOutside(r.clients);
   Print("{}", ChainTable(r.chains));
   Print("{}", MetricsTable(r.metrics));
   Print("of the simulation itself, not of the robots:\n");
@@ -187,6 +201,10 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
         {"ended_at_ns", c.ended_at_ns},
         {"wait_status", c.wait_status},
     });
+    if (c.outside.answers > 0) {
+      json["clients"][c.name]["outside"] = {{"answers", c.outside.answers},
+                                            {"waited_ns", c.outside.waited.ns()}};
+    }
     if (answers) AddFigures(c.figures, json["clients"][c.name]);
     if (!options.counts_work) continue;
     json["clients"][c.name]["calls"] = c.usage.work.calls;

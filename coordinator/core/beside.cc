@@ -22,7 +22,7 @@ constexpr VirtualDuration kLeastTurn = VirtualDuration::Microseconds(20);
 
 // Before the first virtual CPU acts: those that act soon after it, and need not wait for it.
 void Engine::BeginTurnsBeside() {
-  if (!beside_.MayBegin()) return;
+  if (!beside_.MayBegin() || outside_.IsAwaited()) return;
   const VirtualTime least = run_.root.Least();
   const VirtualTime until =
       std::min({run_.root.NextOutput(), run_.end, AtMostNever(least, run_.scenario.drift_bound)});
@@ -33,7 +33,7 @@ void Engine::BeginTurnsBeside() {
   std::array<TemporalConsistency::Leaf, TurnsBeside::kMostLooks> leaves;
   const std::size_t count = run_.root.Soonest(until, leaves);
   for (std::size_t i = 1; i < count && beside_.MayBegin(); ++i) {
-    if (leaves[i] == network_leaf_) continue;
+    if (leaves[i] == network_leaf_ || leaves[i] == outside_leaf_) continue;
     BeginTurnBeside(run_.cpus[static_cast<std::size_t>(leaves[i])]);
   }
 }

@@ -389,10 +389,11 @@ bool Engine::Step() {
   LookAround();
   dds_.TakeOwnMessages();
   ahead_.Look();
+  if (outside_.IsAwaited() || shows_outside_) ShowOutside();
   // Where everything is at the start, people see who watch a run that stands there.
   if (pacing_.IsOn() && world_.present() && world_.NextStop() == VirtualTime() && StepWorld())
     return true;
-  if (!KeepPace() || StepWorld() || StepNetwork()) return true;
+  if (!KeepPace() || StepWorld() || StepNetwork() || StepOutside()) return true;
   const VirtualTime least = run_.root.Least();
   if (least >= run_.end || least.IsNever()) {
     if (least.IsNever() && !WorldGoesOn() && AwaitOutside()) return true;

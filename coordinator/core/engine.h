@@ -28,6 +28,7 @@
 #include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/lock_futexes.h"
 #include "coordinator/calls/notifications.h"
+#include "coordinator/calls/outside_waits.h"
 #include "coordinator/calls/posted_datagrams.h"
 #include "coordinator/calls/priority_inheritance.h"
 #include "coordinator/calls/raw_calls.h"
@@ -133,6 +134,9 @@ class Engine {
   void PollUnseen();
   bool UnmanagedRun() const;
   void WaitOutside();
+  bool StepOutside();
+  void ShowOutside();
+  Moment WhenItCame(Moment moment);
   void WaitForDebugger();
   bool AwaitOutside();
   VirtualTime Furthest() const;
@@ -185,6 +189,7 @@ class Engine {
   Reactor::Found OnConnection(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnProcessEnd(Subject process, std::uint32_t events, Moment moment);
   Reactor::Found OnAwaited(Subject subject, std::uint32_t events, Moment moment);
+  Reactor::Found OnOutside(Subject file, std::uint32_t events, Moment moment);
   Reactor::Found OnUnknownChildEnd(Subject child, std::uint32_t events, Moment moment);
   Reactor::Found OnTrap(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnCommand(Subject channel, std::uint32_t events, Moment moment);
@@ -245,6 +250,7 @@ class Engine {
   World world_{[this](const std::string& text) { run_.Warn(text); }};
   RobotNetwork network_;
   TemporalConsistency::Leaf network_leaf_ = -1;  // -1: there is no network
+  TemporalConsistency::Leaf outside_leaf_ = -1;
   VirtualTime network_progress_;
   AnswerFeed answers_;
   Activations activations_;
@@ -279,7 +285,9 @@ class Engine {
   TimerSignals timer_signals_{run_, waker_, signal_wakes_};
   TimerCalls timers_{run_, waker_, timer_signals_};
   RawTimers raw_timers_{run_, timers_};
-  DescriptorWaits descriptors_{reactor_};
+  Peers peers_{run_};
+  OutsideWaits outside_{run_, reactor_, peers_, [this] { return RunningTime(); }};
+  DescriptorWaits descriptors_{reactor_, outside_};
   SharedEvents shared_events_{run_, waker_, reactor_};
   LocalSockets local_sockets_{run_};
   DatagramLog datagram_log_;
@@ -289,7 +297,7 @@ class Engine {
                                if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.at);
                              }};
   BarePrograms bare_programs_{run_};
-  RosDaemon ros_daemon_{run_};
+  RosDaemon ros_daemon_{run_, peers_};
   GuardedCalls guard_;
 
   // Who takes part: how threads and processes come, and how they go.
@@ -344,7 +352,7 @@ class Engine {
   Notifications notifications_{run_,
                                waker_,
                                {expulsion_, descriptors_, unknown_children_, timers_, spawns_,
-                                scheduling_, signals_, objects_, dds_, local_sockets_}};
+                                scheduling_, signals_, objects_, dds_, local_sockets_, outside_}};
 
   // What users are told.
   DebuggerHold debugger_{run_};
@@ -372,6 +380,7 @@ class Engine {
   std::vector<Late> put_off_;
   std::vector<TrappedCall> unborn_calls_;  // of threads that are to be known soon
 
+  bool awaits_outside_ = false, shows_outside_ = false;
   bool reached_end_ = false;
   std::optional<VirtualTime> idle_at_;  // where nobody acts by itself,
   HostTime idle_since_;                 // and since when

@@ -236,7 +236,7 @@ Reactor::Found Engine::TakeEvents(HostDuration timeout, Moment moment, bool is_r
     }
     return {};
   }
-  if (run_.turn.lasts()) moment = {run_.WrittenAt()};
+  moment = run_.turn.lasts() ? Moment{run_.WrittenAt()} : WhenItCame(moment);
   Reactor::Found found = reactor_.Handle(moment);
   found |= WakeReadyAwaiters(moment);
   if (!run_.turn.lasts() || found.stops_running || !found.blocks_running) return found;

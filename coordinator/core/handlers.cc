@@ -35,6 +35,7 @@ void Engine::RegisterHandlers() {
   on(Tag::kDetector, &Engine::OnDetector);
   on(Tag::kDetectorEnd, &Engine::OnDetectorEnd);
   on(Tag::kStateAsked, &Engine::OnStateAsked);
+  on(Tag::kOutside, &Engine::OnOutside);
 }
 
 Reactor::Found Engine::OnPipe(Subject process, std::uint32_t, Moment moment) {
@@ -77,6 +78,12 @@ Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
   if (skips_in != 0 && skips_in + 1 >= reactor_.next_look()) return {};
   ready_awaiters_.push_back(&task);
   return {.wakes_others = true};
+}
+
+Reactor::Found Engine::OnOutside(Subject file, std::uint32_t, Moment moment) {
+  outside_.HasCome(file, RunningTime(), awaits_outside_ ? moment.at : VirtualTime());
+  ShowOutside();
+  return {};
 }
 
 Reactor::Found Engine::OnUnknownChildEnd(Subject child, std::uint32_t, Moment moment) {

@@ -42,6 +42,7 @@ ClientReport RunReporter::ReportOf(const Launches::Launch& launch) const {
   const Process& process = *launch.process;
   client.started_at_ns = process.started_at.ns();
   client.usage = from_.usage.UsageOfAll(process);
+  client.outside = process.outside;
   client.ended_at_ns = process.ended_at.has_value() ? process.ended_at->ns() : -1;
   client.wait_status = process.wait_status;
   return client;

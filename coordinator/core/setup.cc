@@ -172,6 +172,7 @@ std::string Engine::PrepareMemory() {
   for (std::size_t i = 0; i < commands.size(); ++i)
     datagrams_.AddCommandAddress(published->own_receivers.addresses[i], commands[i]);
   local_sockets_.PublishIn(published->local_sockets);
+  outside_.PublishIn(published->outside_files);
   memory_ = &published->run;
   run_.header = &memory_->header;
   run_.header->magic = shm::kMagic;
@@ -222,6 +223,7 @@ void Engine::MakeRobots() {
     robot.number = static_cast<std::uint32_t>(run_.robots.size());
     robot.is_ideal = spec.is_ideal;
     robot.is_ours = spec.is_ours;
+    robot.outside_speed = spec.outside_speed;
     for (std::uint32_t core = 0; core < cores; ++core) {
       VirtualCpu& cpu = run_.cpus.emplace_back();
       cpu.robot = &robot;
@@ -233,6 +235,7 @@ void Engine::MakeRobots() {
   if (network_.present()) {
     network_leaf_ = run_.root.AddLeaf(static_cast<int>(run_.robots.size()) + 1);
   }
+  outside_leaf_ = run_.root.AddLeaf(static_cast<int>(run_.robots.size()) + 2);
 }
 
 std::string Engine::PrepareHostCpu() {

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <string_view>
+
+#include "coordinator/os/socket_tables.h"
 
 namespace tcs {
 
@@ -79,17 +80,9 @@ std::optional<std::uint16_t> PortOfRosDaemon(const std::vector<std::string>& arg
 }
 
 std::uint64_t ListenerAt(const std::string& table, std::uint16_t port) {
-  const std::string loopback = fmt::format("0100007F:{:04X}", port),
-                    any = fmt::format("00000000:{:04X}", port);
-  std::istringstream lines(table);
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream in(line);
-    std::string number, local, remote, state, queues, timer, unanswered, user, timeout;
-    std::uint64_t inode = 0;
-    in >> number >> local >> remote >> state >> queues >> timer >> unanswered >> user >> timeout >>
-        inode;
-    constexpr std::string_view kListens = "0A";
-    if (in && state == kListens && (local == loopback || local == any)) return inode;
+  for (const InternetSocket& socket : InternetSocketsOf(table)) {
+    const bool is_here = socket.local.host == "127.0.0.1" || socket.local.IsAny();
+    if (socket.listens && is_here && socket.local.port == port) return socket.inode;
   }
   return 0;
 }
@@ -102,7 +95,7 @@ void RosDaemon::Begins(pid_t pid) {
   const auto port = PortOfRosDaemon(arguments, DomainOf(pid));
   const std::uint64_t listener =
       port.has_value() ? ListenerAt(ContentsOf(folder + "net/tcp"), *port) : 0;
-  if (listener == 0 || IsOfRun(listener)) return;
+  if (listener == 0 || peers_.IsOfRun(listener)) return;
   has_warned_ = true;
   const std::size_t command = IsRos2(arguments[0]) ? 1 : 2;
   run_.Warn(
@@ -110,19 +103,6 @@ void RosDaemon::Begins(pid_t pid) {
                   "the run and knows nothing of it: end it (`ros2 daemon stop`), or give the "
                   "command --no-daemon",
                   arguments[command], arguments[command + 1], *port));
-}
-
-bool RosDaemon::IsOfRun(std::uint64_t socket) const {
-  const std::string wanted = fmt::format("socket:[{}]", socket);
-  for (const Process& process : run_.table.processes()) {
-    if (process.dead) continue;
-    std::error_code unreadable;
-    for (const auto& fd :
-         std::filesystem::directory_iterator(fmt::format("/proc/{}/fd", process.pid), unreadable)) {
-      if (std::filesystem::read_symlink(fd.path(), unreadable).string() == wanted) return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace tcs

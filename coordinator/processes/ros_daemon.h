@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/processes/peers.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {
@@ -29,15 +30,14 @@ std::uint64_t ListenerAt(const std::string& table, std::uint16_t port);
 
 class RosDaemon {
  public:
-  explicit RosDaemon(RunState& run) : run_(run) {}
+  RosDaemon(RunState& run, Peers& peers) : run_(run), peers_(peers) {}
 
   // The process has executed a program, which is about to set itself up.
   void Begins(pid_t pid);
 
  private:
-  bool IsOfRun(std::uint64_t socket) const;
-
   RunState& run_;
+  Peers& peers_;
   bool has_warned_ = false;
 };
 

@@ -6,6 +6,7 @@
 
 #include "coordinator/scenario/executable.h"
 #include "coordinator/scenario/load_lives.h"
+#include "coordinator/scenario/load_outside.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 #include "coordinator/scenario/substitute.h"
@@ -24,13 +25,19 @@ void LoadCpu(const YamlValue& value, RobotSpec* robot) {
     value.Fail("is '" + value.AsText() + "'; write ideal, or a map like {cores: 1, speed: 1.0}");
   }
   const YamlMap map = value.AsMap();
-  map.AllowOnly({"cores", "speed"});
+  map.AllowOnly({"cores", "speed", "outside_speed"});
   if (const YamlValue* cores = map.Find("cores")) {
     robot->cores = static_cast<int>(cores->AsInteger(1, kMostCores));
   }
   if (const YamlValue* speed = map.Find("speed")) {
     robot->speed = speed->AsPositiveNumber(" (1.0 is the host's speed)");
     if (robot->speed < kSlowest || robot->speed > kFastest) {
+      speed->Fail("is " + speed->AsText() + "; it must be between 0.001 and 1000");
+    }
+  }
+  if (const YamlValue* speed = map.Find("outside_speed")) {
+    robot->outside_speed = speed->AsPositiveNumber(" (1.0: an hour outside is an hour inside)");
+    if (robot->outside_speed < kSlowest || robot->outside_speed > kFastest) {
       speed->Fail("is " + speed->AsText() + "; it must be between 0.001 and 1000");
     }
   }
@@ -111,7 +118,7 @@ ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
   const YamlMap map = entry.value.AsMap();
   map.AllowOnly({"command", "class", "priority", "deadline", "body", "environment",
                  "fixed_call_cost", "fixed_allocation_cost", "patch_vdso", "dds",
-                 "working_directory", "start", "after", "stop_signal", "stop_grace"});
+                 "working_directory", "start", "after", "stop_signal", "stop_grace", "outside"});
   ClientSpec client;
   client.name = robot + "/" + entry.key;
   client.working_directory = variables.scenario_directory;
@@ -133,6 +140,7 @@ ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
   }
   if (const YamlValue* v = map.Find("patch_vdso")) client.patch_vdso = v->AsBoolean();
   if (const YamlValue* v = map.Find("dds")) client.dds = LoadDdsTransport(*v);
+  if (const YamlValue* v = map.Find("outside")) client.outside = LoadOutside(*v, variables);
   LoadLife(map, variables, &client);
   return client;
 }

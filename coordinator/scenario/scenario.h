@@ -47,6 +47,13 @@ enum class ClientFolder {
   kFresh,  // its own in the run's results: there is nothing in it but a copy of `copied_folder`
 };
 
+// What a client waits for that is outside of the run (calls/outside_waits.h).
+struct OutsideSpec {
+  std::vector<std::string> names;  // absolute paths, '@' and abstract names, HOST:PORT
+  VirtualDuration takes = VirtualDuration::Milliseconds(5);  // under --accounting fixed
+  HostDuration patience = HostDuration::Seconds(10);         // real time, for one answer
+};
+
 struct ClientSpec {
   std::string name;  // unique in the scenario: "ROBOT/CLIENT" as written in the YAML
   std::vector<std::string> command;  // argv; command[0] is an absolute path after loading
@@ -68,6 +75,7 @@ struct ClientSpec {
   // It is started then, and not before the client named `after` has ended, unless that is empty.
   VirtualDuration start{};
   std::string after;
+  OutsideSpec outside;
   // How it is ended at the run's end: asked by the signal, and killed so much virtual time later.
   int stop_signal = SIGTERM;
   VirtualDuration stop_grace = VirtualDuration::Milliseconds(500);
@@ -91,8 +99,9 @@ struct RobotSpec {
   double speed = 1.0;  // of one core, relative to the host's
   std::vector<ClientSpec> clients;
   SchedulerPolicy scheduler = SchedulerPolicy::kFixedPriority;
-  bool is_ideal = false;  // computing takes its programs no time
-  bool is_ours = false;   // tcsim's own, which no scenario names (gateway/gateway_robot.h)
+  bool is_ideal = false;       // computing takes its programs no time
+  bool is_ours = false;        // tcsim's own, which no scenario names (gateway/gateway_robot.h)
+  double outside_speed = 1.0;  // virtual seconds for each real one that its programs wait outside
 };
 
 struct UdpEndpoint {

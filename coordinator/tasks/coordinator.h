@@ -87,6 +87,7 @@ struct ClientReport {
   std::string name;
   ClientFigures figures;            // of runs whose results are kept
   Usage usage;                      // of all that it has started, too
+  OutsideUsage outside;             // the same
   std::int64_t started_at_ns = -1;  // -1: never
   std::int64_t ended_at_ns = -1;    // before the run did; -1: it lived to the end
   int wait_status = 0;              // as of waitpid, if it ended

@@ -31,6 +31,7 @@ enum class Tag : std::uint32_t {
   kDetector,
   kDetectorEnd,
   kStateAsked,
+  kOutside,
   kCount
 };
 

@@ -223,6 +223,7 @@ struct Process {
   bool asked_for_io_uring = false;          // which it was refused
   VirtualTime started_at;
   std::optional<VirtualTime> ended_at;
+  OutsideUsage outside;  // a client's, with its descendants'
 };
 
 struct VirtualCpu {
@@ -244,11 +245,12 @@ struct Robot {
 
   std::string name;
   double speed;
-  std::uint32_t number = 0;   // in the scenario's order, from 1 on
-  bool is_ideal = false;      // its threads are charged nothing
-  bool is_ours = false;       // tcsim's own: no run goes on for its programs
-  bool is_reached = false;    // nothing is local to it any more (calls/local_sockets.h)
-  bool is_disturbed = false;  // others than its own programs send it signals (core/turns_beside.h)
+  double outside_speed = 1.0;  // virtual seconds for each real one that is waited outside
+  std::uint32_t number = 0;    // in the scenario's order, from 1 on
+  bool is_ideal = false;       // its threads are charged nothing
+  bool is_ours = false;        // tcsim's own: no run goes on for its programs
+  bool is_reached = false;     // nothing is local to it any more (calls/local_sockets.h)
+  bool is_disturbed = false;   // others than its own programs send it signals (core/turns_beside.h)
   RobotScheduler scheduler;
   VirtualTime next_launch = VirtualTime::Never();  // when the next client of its starts
   std::vector<VirtualCpu*> cpus;                   // by core

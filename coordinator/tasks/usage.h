@@ -3,9 +3,16 @@
 
 #include <cstdint>
 
+#include "shm/time_kinds.h"
 #include "shm/work_counts.h"
 
 namespace tcs {
+
+// What was waited for from outside of the run (calls/outside_waits.h).
+struct OutsideUsage {
+  std::int64_t answers = 0;
+  VirtualDuration waited;
+};
 
 struct Usage {
   std::int64_t charged_ns = 0;   // virtual

@@ -59,6 +59,8 @@ struct Descriptors {
   std::uint32_t events = 0;       // as epoll has them
   std::uint64_t order = 0;        // of waiting, over several attempts
   int passed_over_for = kNobody;  // the thread that the last event was for, until it has tried
+  bool has_hidden = false;        // what comes by some is not to be seen yet (outside_waits.h);
+  std::vector<UniqueFd> members;  // of an epoll set with such: those that may be seen
   bool is_edge_armed = false;     // the descriptor tells of every further event,
   std::uint64_t skips_in = 0;     // and the one in this look of the reactor's is of what was there
 };

@@ -50,7 +50,7 @@ robots:
     QQ
     cpu: {QQ}
     clients:
-      c: {command: [./controller], working_directory: {fresh: true, QQ}, QQ}
+      c: {command: [./controller], working_directory: {fresh: true, QQ}, outside: {QQ}, QQ}
 network: {links: [{between: [r, r], QQ}], QQ}
 clock: {qos: {QQ}, QQ}
 chains: {e: {from: x, to: push, QQ}}

@@ -1,0 +1,367 @@
+#include "coordinator/calls/outside_waits.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/epoll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <x86gprintrin.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "coordinator/os/open_files.h"
+#include "coordinator/tasks/borrowed.h"
+
+namespace tcs {
+
+namespace {
+
+// Others may pass by so much what real time stands for: their turns would be as short as the real
+// time between two looks otherwise.
+constexpr VirtualDuration kGrain = VirtualDuration::Microseconds(100);
+
+// From when something has been found to when its time is taken.
+constexpr VirtualDuration kFound = VirtualDuration::Microseconds(20);
+
+// What a program says of itself is believed so far.
+constexpr HostDuration kLongestNews = HostDuration::Seconds(1);
+
+VirtualDuration Passed(HostDuration real, double speed) {
+  return VirtualNs(std::llround(static_cast<double>(real.ns()) * speed));
+}
+
+double SpeedOf(const Process& process) { return process.robot->outside_speed; }
+
+const ClientSpec& SpecOf(const Process& process) {
+  static const ClientSpec kOrdinary;
+  const Process* client = process.client;
+  return client != nullptr && client->spec != nullptr ? *client->spec : kOrdinary;
+}
+
+bool IsNamed(const Process& process, const std::string& name) {
+  const std::vector<std::string>& names = SpecOf(process).outside.names;
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+void OutsideWaits::PublishIn(shm::OutsideFiles& files) {
+  // There the world stands while a program waits.
+  if (run_.IsCallback()) return;
+  published_ = &files;
+  for (const RobotSpec& robot : run_.scenario.robots) {
+    for (const ClientSpec& client : robot.clients) {
+      for (const std::string& name : client.outside.names) {
+        struct stat status;
+        // Sockets are known by whom they reach (Connects).
+        if (!name.starts_with('/') || stat(name.c_str(), &status) != 0) continue;
+        if (!S_ISSOCK(status.st_mode)) Publish(shm::OutsideKeyOf(status), name, true);
+      }
+    }
+  }
+}
+
+OutsideWaits::File* OutsideWaits::Find(std::uint64_t key) {
+  const auto found = std::find_if(files_.begin(), files_.end(),
+                                  [key](const File& file) { return file.key == key; });
+  return found == files_.end() ? nullptr : &*found;
+}
+
+OutsideWaits::File* OutsideWaits::FileOf(int fd) {
+  struct stat status;
+  if (files_.empty() || fstat(fd, &status) != 0) return nullptr;
+  return Find(shm::OutsideKeyOf(status));
+}
+
+bool OutsideWaits::MayComeFromOutside() const {
+  return std::any_of(files_.begin(), files_.end(),
+                     [](const File& file) { return file.is_always || file.state != State::kIdle; });
+}
+
+// In the place of one that is gone, or in a new one. Null: there is no room, and the file is as any
+// other.
+OutsideWaits::File* OutsideWaits::Publish(std::uint64_t key, std::string name, bool is_always) {
+  if (File* known = Find(key); known != nullptr) return known;
+  auto free =
+      std::find_if(files_.begin(), files_.end(), [](const File& file) { return file.key == 0; });
+  if (free == files_.end()) {
+    const std::uint32_t used = published_->used.load();
+    if (used == shm::OutsideFiles::kPlaces) return nullptr;
+    files_.emplace_back().place = &published_->places[used];
+    free = files_.end() - 1;
+    published_->used.store(used + 1);
+  }
+  auto* const place = free->place;
+  *free = File{};
+  free->place = place;
+  free->key = key;
+  free->name = std::move(name);
+  free->is_always = is_always;
+  ShowFrom(*free, is_always ? shm::kOutsideRests : 0);
+  place->key.store(key);
+  return &*free;
+}
+
+void OutsideWaits::ShowFrom(File& file, std::int64_t ns) { file.place->seen_from_ns.store(ns); }
+
+bool OutsideWaits::Handle(Task& task, const shm::Notification& note) {
+  if (published_ == nullptr) return false;
+  const auto event = static_cast<shm::OutsideEvent>(note.args[0]);
+  const UniqueFd copy = CopyOfDescriptor(*task.process, static_cast<int>(note.args[1]));
+  if (!copy) return false;
+  if (event == shm::OutsideEvent::kConnects) {
+    Connects(task, copy.get());
+    return false;
+  }
+  if (event == shm::OutsideEvent::kLooks) {
+    BeginsWait(task, copy.get());
+    return true;
+  }
+  File* file = FileOf(copy.get());
+  if (file == nullptr) return false;
+  switch (event) {
+    case shm::OutsideEvent::kAsks:
+      file->has_outlasted = false;
+      if (file->state == State::kIdle && !file->is_always) {
+        Ask(*file, task, SinceTsc(static_cast<std::uint64_t>(note.args[2])));
+      }
+      break;
+    case shm::OutsideEvent::kTakes:
+      file->has_outlasted = false;
+      Rest(*file);
+      break;
+    case shm::OutsideEvent::kCloses:
+      Closes(task, copy.get());
+      break;
+    case shm::OutsideEvent::kConnects:
+    case shm::OutsideEvent::kLooks:
+      break;
+  }
+  return false;
+}
+
+void OutsideWaits::Connects(const Task& task, int fd) {
+  struct stat status;
+  if (fstat(fd, &status) != 0) return;
+  if (S_ISCHR(status.st_mode)) {
+    std::error_code unreadable;
+    const auto path =
+        std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", fd), unreadable);
+    Publish(shm::OutsideKeyOf(status), path.string(), true);
+    return;
+  }
+  const std::optional<Peers::Peer> peer = peers_.Of(*task.process, fd);
+  if (!peer.has_value()) return;
+  const bool is_named = IsNamed(*task.process, peer->name);
+  if (!peer->is_outside && !is_named) return;
+  Publish(shm::OutsideKeyOf(status), peer->name, is_named);
+}
+
+// Others of the same file may be left: of the process's, and of those that it has made.
+void OutsideWaits::Closes(const Task& task, int fd) {
+  File* file = FileOf(fd);
+  struct stat status;
+  if (file == nullptr || (file->key & shm::kOutsideSocket) == 0 || fstat(fd, &status) != 0) return;
+  const std::string wanted = fmt::format("socket:[{}]", status.st_ino);
+  int left = 0;
+  std::error_code unreadable;
+  for (const auto& each : std::filesystem::directory_iterator(
+           fmt::format("/proc/{}/fd", task.process->pid), unreadable)) {
+    left += std::filesystem::read_symlink(each.path(), unreadable).string() == wanted ? 1 : 0;
+  }
+  if (left > 1 || (file->process != nullptr && file->process != task.process)) return;
+  Rest(*file);
+  ShowFrom(*file, 0);
+  file->place->key.store(0);
+  file->key = 0;
+}
+
+// The peer has been at work since the program began to send, however late this process hears of it.
+HostDuration OutsideWaits::SinceTsc(std::uint64_t tsc) const {
+  const std::uint64_t now = __rdtsc();
+  if (tsc > now) return {};
+  const double passed_ns = static_cast<double>(now - tsc) / run_.ticks_per_ns;
+  return passed_ns < static_cast<double>(kLongestNews.ns()) ? HostNs(std::llround(passed_ns))
+                                                            : HostDuration();
+}
+
+void OutsideWaits::Ask(File& file, const Task& task, HostDuration ago) {
+  file.state = State::kAsked;
+  file.process = task.process;
+  file.asked_at = task.reached;
+  file.asked_real = clock_() - ago;
+  ShowFrom(file, shm::kOutsideUnknown);
+}
+
+// Calls `take` with the file, or with those that are in the epoll set, of which `fd` is a copy, and
+// a copy of each.
+template <class Take>
+void OutsideWaits::ForEachAt(const Task& task, int fd, Take take) {
+  struct stat status;
+  if (files_.empty() || fstat(fd, &status) != 0) return;
+  const bool may_be_set = (status.st_mode & S_IFMT) == 0;
+  if (!may_be_set) {
+    if (File* file = Find(shm::OutsideKeyOf(status)); file != nullptr) take(*file, fd);
+    return;
+  }
+  if (!MayComeFromOutside()) return;
+  for (const EpollEntry& entry : EntriesOf(fd)) {
+    const UniqueFd copy = CopyOfDescriptor(*task.process, entry.fd);
+    File* file = copy ? FileOf(copy.get()) : nullptr;
+    if (file != nullptr) take(*file, copy.get());
+  }
+}
+
+bool OutsideWaits::BeginsWait(const Task& task, int fd) {
+  bool hides = false;
+  ForEachAt(task, fd, [&](File& file, int copy) {
+    Await(file, task, copy);
+    hides |= IsHidden(file, task.reached);
+  });
+  return hides;
+}
+
+bool OutsideWaits::Hides(const Task& task, int fd) {
+  bool hides = false;
+  ForEachAt(task, fd, [&](const File& file, int) { hides |= IsHidden(file, task.reached); });
+  return hides;
+}
+
+bool OutsideWaits::IsHidden(const File& file, VirtualTime at) {
+  return file.state == State::kAsked || (file.state == State::kCame && file.seen_from > at);
+}
+
+bool OutsideWaits::IsHidden(int fd, VirtualTime at) {
+  const File* file = FileOf(fd);
+  return file != nullptr && IsHidden(*file, at);
+}
+
+void OutsideWaits::Await(File& file, const Task& task, int fd) {
+  if (file.has_outlasted) return;
+  const bool begins = file.state == State::kIdle || file.state == State::kShown;
+  if (begins && file.is_always) Ask(file, task);
+  if (file.state != State::kAsked || file.is_awaited) return;
+  file.copy.Reset(fcntl(fd, F_DUPFD_CLOEXEC, 0));
+  file.number = ++watches_ & Subject::kNumberMask;
+  const auto index = static_cast<std::uint32_t>(
+      file.place - static_cast<shm::OutsideFiles::Place*>(published_->places));
+  const bool is_watched =
+      file.copy && reactor_.Add(file.copy.get(), EPOLLIN | EPOLLPRI | EPOLLRDHUP | EPOLLONESHOT,
+                                {Tag::kOutside, index, file.number});
+  if (!is_watched) {
+    // There is nothing to wait for in what cannot be polled.
+    Rest(file);
+    file.has_outlasted = true;
+    ShowFrom(file, 0);
+    return;
+  }
+  file.is_awaited = true;
+  ++awaited_;
+}
+
+void OutsideWaits::Unwatch(File& file) {
+  if (file.copy) reactor_.Remove(file.copy.get());
+  file.copy.Reset();
+}
+
+// Nothing is waited for.
+void OutsideWaits::Rest(File& file) {
+  Unwatch(file);
+  if (std::exchange(file.is_awaited, false)) --awaited_;
+  file.state = State::kIdle;
+  ShowFrom(file, file.is_always && !file.has_outlasted ? shm::kOutsideRests : 0);
+}
+
+void OutsideWaits::HasCome(const Subject& subject, HostTime now, VirtualTime at) {
+  if (subject.index >= files_.size()) return;
+  File& file = files_[subject.index];
+  if (file.state != State::kAsked || !file.is_awaited || file.number != subject.number) return;
+  Unwatch(file);
+  const VirtualDuration took = run_.IsFixed()
+                                   ? SpecOf(*file.process).outside.takes
+                                   : Passed(now - file.asked_real, SpeedOf(*file.process));
+  file.state = State::kCame;
+  file.seen_from = file.asked_at + took;
+  // It was found then; the rest is how long this took.
+  if (!run_.IsFixed() && file.seen_from > at && file.seen_from - at < kFound) file.seen_from = at;
+  ShowFrom(file, std::max<std::int64_t>(file.seen_from.ns(), 1));
+  if (Process* client = file.process->client; client != nullptr) {
+    ++client->outside.answers;
+    client->outside.waited += took;
+  }
+}
+
+VirtualTime OutsideWaits::DueOf(const File& file, HostTime now) const {
+  if (file.state == State::kCame) return file.seen_from;
+  if (file.state != State::kAsked || !file.is_awaited) return VirtualTime::Never();
+  if (run_.IsFixed()) return file.asked_at + SpecOf(*file.process).outside.takes;
+  return file.asked_at + Passed(now - file.asked_real, SpeedOf(*file.process));
+}
+
+VirtualTime OutsideWaits::At(HostTime now) const {
+  VirtualTime at = VirtualTime::Never();
+  for (const File& file : files_) at = std::min(at, DueOf(file, now));
+  return at;
+}
+
+VirtualTime OutsideWaits::Due(HostTime now) const {
+  VirtualTime due = VirtualTime::Never();
+  for (const File& file : files_) {
+    VirtualTime its = DueOf(file, now);
+    if (file.state == State::kAsked && !run_.IsFixed()) its = AtMostNever(its, kGrain);
+    due = std::min(due, its);
+  }
+  return due;
+}
+
+HostDuration OutsideWaits::RealTimeUntil(VirtualTime until, HostTime now) const {
+  HostDuration longest;
+  for (const File& file : files_) {
+    if (file.state != State::kAsked || !file.is_awaited) continue;
+    const VirtualDuration left = until - std::min(until, DueOf(file, now));
+    const double real_ns = static_cast<double>(left.ns()) / SpeedOf(*file.process);
+    longest = std::max(longest, HostNs(std::llround(std::min(real_ns, 1e18))));
+  }
+  return longest;
+}
+
+void OutsideWaits::GiveUp(File& file) {
+  const ClientSpec& spec = SpecOf(*file.process);
+  run_.Warn(fmt::format(
+      "{} has waited {:g} s, of real time, for {}, which is outside of the run; it is not waited "
+      "for "
+      "any more until the program sends to it again, or something comes from there (its `outside: "
+      "{{patience: TIME}}` sets how long)",
+      file.process->name, spec.outside.patience.seconds(), file.name));
+  file.has_outlasted = true;
+  Rest(file);
+}
+
+bool OutsideWaits::Show(VirtualTime at, HostTime now) {
+  bool has_shown = false;
+  for (File& file : files_) {
+    if (file.state == State::kCame && file.seen_from <= at) {
+      file.state = State::kShown;
+      if (std::exchange(file.is_awaited, false)) --awaited_;
+      has_shown = true;
+    } else if (file.state == State::kAsked && file.is_awaited) {
+      const bool is_over = now - file.asked_real > SpecOf(*file.process).outside.patience;
+      if (file.process->dead) {
+        Rest(file);
+      } else if (is_over) {
+        GiveUp(file);
+      } else {
+        continue;
+      }
+      has_shown = true;
+    }
+  }
+  return has_shown;
+}
+
+}  // namespace tcs

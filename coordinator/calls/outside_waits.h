@@ -1,0 +1,120 @@
+// What programs wait for that is outside of the run: answers on sockets whose peer is outside,
+// devices (GPUs, accelerators, cameras), and what `clients.NAME.outside` names.
+//
+// It takes real time, and virtual time leaps over whatever it can. So from a request on, while
+// somebody waits or has looked for what is to come, nobody passes the virtual time that the real
+// time since then stands for: a leaf of the scheduler tree stands there (core/outside.cc). What
+// came after a real time d is seen at the request's time + d x outside_speed, neither before, where
+// the run is slower than real time, nor after. Under set costs it takes what was set, and virtual
+// time stands at its end until it is there.
+//
+// A request is the first sending by such a socket since the program last took something from it;
+// of devices and of what is named, the beginning of a wait or a look. Who outlasts
+// `outside.patience` is not waited for until it is heard again.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "coordinator/os/unique_fd.h"
+#include "coordinator/processes/peers.h"
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/run_state.h"
+#include "shm/outside_files.h"
+
+namespace tcs {
+
+class OutsideWaits {
+ public:
+  // `clock`: the host's, as all times that are given here.
+  OutsideWaits(RunState& run, Reactor& reactor, Peers& peers, std::function<HostTime()> clock)
+      : run_(run), reactor_(reactor), peers_(peers), clock_(std::move(clock)) {}
+  OutsideWaits(const OutsideWaits&) = delete;
+  OutsideWaits& operator=(const OutsideWaits&) = delete;
+
+  // Where all clients see what is hidden; outlives this. The files that clients name are there from
+  // then on.
+  void PublishIn(shm::OutsideFiles& files);
+
+  // The thread says what it does with a file. True: it is to hold, as for a read.
+  bool Handle(Task& task, const shm::Notification& note);
+
+  // The thread begins to wait at the file, or the epoll set, of which `fd` is a copy. True: what
+  // comes by it, or by a member, is hidden from it, and the wait must not end by that until Show()
+  // says so.
+  bool BeginsWait(const Task& task, int fd);
+  // Whether that is still so.
+  bool Hides(const Task& task, int fd);
+  // Whether it is hidden now from those who are at that time; of an epoll set: false.
+  bool IsHidden(int fd, VirtualTime at);
+
+  // Something has come, and was found at the virtual time `at`.
+  void HasCome(const Subject& subject, HostTime now, VirtualTime at);
+
+  // Somebody waits, or has looked.
+  bool IsAwaited() const { return awaited_ > 0; }
+  // When something from outside is seen next, at the earliest: no leaf may pass that.
+  VirtualTime Due(HostTime now) const;
+  // The virtual time that the real one stands for, for the request that is behind most.
+  VirtualTime At(HostTime now) const;
+  // How long it is, in real time, until others may come to `until`.
+  HostDuration RealTimeUntil(VirtualTime until, HostTime now) const;
+  // What is to be seen at `at` is not hidden any more, and who has had no answer for too long waits
+  // no longer. True: there was something.
+  bool Show(VirtualTime at, HostTime now);
+
+ private:
+  enum class State {
+    kIdle,
+    kAsked,  // nothing has come yet
+    kCame,   // but is hidden
+    kShown,  // and is to be taken
+  };
+  struct File {
+    std::uint64_t key = 0;
+    std::string name;
+    bool is_always = false;  // waited for without a request
+    shm::OutsideFiles::Place* place = nullptr;
+    const Process* process = nullptr;  // that asked
+    State state = State::kIdle;
+    bool is_awaited = false, has_outlasted = false;
+    VirtualTime asked_at, seen_from;
+    HostTime asked_real;
+    UniqueFd copy;             // watched while it is awaited
+    std::uint32_t number = 0;  // of the watch
+  };
+
+  File* Find(std::uint64_t key);
+  File* FileOf(int fd);
+  File* Publish(std::uint64_t key, std::string name, bool is_always);
+  void Connects(const Task& task, int fd);
+  void Closes(const Task& task, int fd);
+  template <class Take>
+  void ForEachAt(const Task& task, int fd, Take take);
+  static bool IsHidden(const File& file, VirtualTime at);
+  HostDuration SinceTsc(std::uint64_t tsc) const;
+  void Ask(File& file, const Task& task, HostDuration ago = {});
+  void Await(File& file, const Task& task, int fd);
+  void Unwatch(File& file);
+  void Rest(File& file);
+  void GiveUp(File& file);
+  bool MayComeFromOutside() const;
+  VirtualTime DueOf(const File& file, HostTime now) const;
+  static void ShowFrom(File& file, std::int64_t ns);
+
+  RunState& run_;
+  Reactor& reactor_;
+  Peers& peers_;
+  const std::function<HostTime()> clock_;
+  shm::OutsideFiles* published_ = nullptr;
+  std::deque<File> files_;  // never moved
+  int awaited_ = 0;         // of those
+  std::uint32_t watches_ = 0;
+};
+
+}  // namespace tcs

@@ -1,0 +1,139 @@
+#include "coordinator/processes/peers.h"
+
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <vector>
+
+#include "coordinator/os/descendants.h"
+#include "coordinator/os/socket_tables.h"
+
+namespace tcs {
+
+namespace {
+
+// As the process has it, which may be in a network of its own.
+std::string TableOf(const Process& process, std::string_view name) {
+  std::ifstream in(fmt::format("/proc/{}/net/{}", process.pid, name), std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+int OptionOf(int fd, int option) {
+  int value = -1;
+  socklen_t size = sizeof value;
+  getsockopt(fd, SOL_SOCKET, option, &value, &size);
+  return value;
+}
+
+std::vector<InternetSocket> SocketsOf(const Process& process, bool is_tcp) {
+  std::vector<InternetSocket> sockets = InternetSocketsOf(TableOf(process, is_tcp ? "tcp" : "udp"));
+  std::vector<InternetSocket> six = InternetSocketsOf(TableOf(process, is_tcp ? "tcp6" : "udp6"));
+  std::move(six.begin(), six.end(), std::back_inserter(sockets));
+  return sockets;
+}
+
+bool HasSocket(pid_t pid, std::uint64_t inode) {
+  const std::string wanted = fmt::format("socket:[{}]", inode);
+  std::error_code unreadable;
+  const std::filesystem::directory_iterator descriptors(fmt::format("/proc/{}/fd", pid),
+                                                        unreadable);
+  return std::any_of(begin(descriptors), end(descriptors), [&](const auto& each) {
+    return std::filesystem::read_symlink(each.path(), unreadable).string() == wanted;
+  });
+}
+
+}  // namespace
+
+bool Peers::IsOfRun(std::uint64_t inode) {
+  const auto [known, is_new] = is_of_run_.try_emplace(inode, false);
+  if (!is_new) return known->second;
+  const std::vector<pid_t> processes = DescendantsOf(getpid());
+  known->second = HasSocket(getpid(), inode) ||
+                  std::any_of(processes.begin(), processes.end(),
+                              [inode](pid_t pid) { return HasSocket(pid, inode); });
+  return known->second;
+}
+
+// Who listens there is asked first: that is the same one for all its connections.
+std::optional<Peers::Peer> Peers::InternetPeer(const Process& process, int fd) {
+  struct stat status;
+  if (fstat(fd, &status) != 0) return std::nullopt;
+  const bool is_tcp = OptionOf(fd, SO_TYPE) == SOCK_STREAM;
+  const std::vector<InternetSocket> sockets = SocketsOf(process, is_tcp);
+  const auto own = std::find_if(sockets.begin(), sockets.end(), [&](const InternetSocket& each) {
+    return each.inode == status.st_ino;
+  });
+  if (own == sockets.end() || own->remote.port == 0) return std::nullopt;
+  const InternetAddress& remote = own->remote;
+  Peer peer{remote.Text()};
+  // Hosts of their own reach each other only.
+  if (run_.scenario.network.has_value()) return peer;
+  const std::vector<std::string> own_addresses = OwnAddresses();
+  const bool is_here = remote.IsLoopback() || std::find(own_addresses.begin(), own_addresses.end(),
+                                                        remote.host) != own_addresses.end();
+  if (!is_here) {
+    peer.is_outside = true;
+    return peer;
+  }
+  const auto serves = [&](const InternetSocket& each) {
+    return each.inode != 0 && each.inode != own->inode && each.local.port == remote.port &&
+           (each.local.host == remote.host || each.local.IsAny());
+  };
+  auto server = std::find_if(sockets.begin(), sockets.end(), [&](const InternetSocket& each) {
+    return serves(each) && (each.listens || !is_tcp);
+  });
+  if (server == sockets.end()) server = std::find_if(sockets.begin(), sockets.end(), serves);
+  peer.is_outside = server != sockets.end() && !IsOfRun(server->inode);
+  return peer;
+}
+
+std::optional<Peers::Peer> Peers::UnixPeer(const Process& process, int fd) {
+  sockaddr_un address{};
+  socklen_t size = sizeof address;
+  if (getpeername(fd, reinterpret_cast<sockaddr*>(&address), &size) != 0) return std::nullopt;
+  constexpr socklen_t kBegin = offsetof(sockaddr_un, sun_path);
+  if (size <= kBegin) return std::nullopt;
+  std::string name(address.sun_path, size - kBegin);
+  const bool is_abstract = name[0] == '\0';
+  if (is_abstract) {
+    std::replace(name.begin(), name.end(), '\0', '@');  // as the kernel writes it
+  } else {
+    name = name.c_str();
+  }
+  Peer peer{name};
+  ucred maker{};
+  socklen_t maker_size = sizeof maker;
+  getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &maker, &maker_size);
+  if (maker.pid == getpid()) return peer;
+  const std::vector<UnixSocket> sockets = UnixSocketsOf(TableOf(process, "unix"));
+  const bool is_stream = OptionOf(fd, SO_TYPE) != SOCK_DGRAM;
+  const auto server = std::find_if(sockets.begin(), sockets.end(), [&](const UnixSocket& each) {
+    return each.name == name && each.listens == is_stream;
+  });
+  peer.is_outside = server != sockets.end() && !IsOfRun(server->inode);
+  return peer;
+}
+
+std::optional<Peers::Peer> Peers::Of(const Process& process, int fd) {
+  switch (OptionOf(fd, SO_DOMAIN)) {
+    case AF_UNIX:
+      return UnixPeer(process, fd);
+    case AF_INET:
+    case AF_INET6:
+      return InternetPeer(process, fd);
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace tcs

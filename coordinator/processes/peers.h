@@ -1,0 +1,39 @@
+// Whom programs of the run meet by their sockets: another program of the run, or somebody outside.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+class Peers {
+ public:
+  explicit Peers(const RunState& run) : run_(run) {}
+
+  struct Peer {
+    std::string name;  // HOST:PORT, a path, or '@' and an abstract name
+    bool is_outside = false;
+  };
+  // Of a socket of the process's that is connected, or is being connected, given a copy of it. None
+  // where there is no peer, or none that has a name. Where it is not known who the peer is, it is
+  // of the run.
+  std::optional<Peer> Of(const Process& process, int fd);
+
+  // Whether a process of the run has the socket with that inode.
+  bool IsOfRun(std::uint64_t inode);
+
+ private:
+  std::optional<Peer> InternetPeer(const Process& process, int fd);
+  std::optional<Peer> UnixPeer(const Process& process, int fd);
+
+  const RunState& run_;
+  std::unordered_map<std::uint64_t, bool> is_of_run_;  // by inode, which no later socket gets
+};
+
+}  // namespace tcs

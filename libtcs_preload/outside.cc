@@ -1,0 +1,198 @@
+#include "libtcs_preload/outside.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "libtcs_preload/descriptor_path.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/user_memory.h"
+#include "libtcs_preload/virtual_clock.h"
+#include "shm/own_receivers.h"
+
+namespace tcs::preload {
+
+namespace {
+
+using shm::OutsideEvent;
+
+void Tell(GuestThread& thread, OutsideEvent event, int fd, std::uint64_t tsc = 0) {
+  const int error = errno;
+  Exchange(thread,
+           Request{.kind = shm::NotificationKind::kOutside,
+                   .args = {static_cast<std::int64_t>(event), fd, static_cast<std::int64_t>(tsc)}});
+  errno = error;
+}
+
+// Whether anything that was asked for is not to be seen yet.
+bool IsAnythingHidden(GuestThread& thread) {
+  if (!IsAnythingOutside()) return false;
+  const shm::OutsideFiles& files = shm::OutsideFilesOf(*g_run);
+  const std::uint32_t used = files.used.load(std::memory_order_acquire);
+  const std::int64_t now = NowNs(thread);
+  for (std::uint32_t i = 0; i < used && i < shm::OutsideFiles::kPlaces; ++i) {
+    const std::int64_t from = files.places[i].seen_from_ns.load(std::memory_order_acquire);
+    if (from > now && from != shm::kOutsideRests) return true;
+  }
+  return false;
+}
+
+// Numbers in a line of /proc/self/fdinfo.
+const char* SkipTo(const char* text, const char* name) {
+  const char* at = strstr(text, name);
+  return at == nullptr ? nullptr : at + strlen(name);
+}
+
+std::uint64_t NumberAt(const char* text, unsigned base) {
+  while (*text == ' ' || *text == '\t') ++text;
+  std::uint64_t number = 0;
+  for (;; ++text) {
+    const unsigned digit = *text >= '0' && *text <= '9'   ? static_cast<unsigned>(*text - '0')
+                           : *text >= 'a' && *text <= 'f' ? static_cast<unsigned>(*text - 'a') + 10
+                                                          : base;
+    if (digit >= base) return number;
+    number = number * base + digit;
+  }
+}
+
+}  // namespace
+
+bool IsAnythingOutside() {
+  return g_run != nullptr && shm::OutsideFilesOf(*g_run).used.load(std::memory_order_relaxed) != 0;
+}
+
+OutsidePlace* OutsideOf(int fd) {
+  if (fd < 0 || !IsAnythingOutside()) return nullptr;
+  struct stat status;
+  if (RawSyscall(SYS_fstat, fd, Arg(&status)) != 0) return nullptr;
+  return shm::OutsidePlaceOf(shm::OutsideFilesOf(*g_run), shm::OutsideKeyOf(status));
+}
+
+bool IsHidden(GuestThread& thread, OutsidePlace* place) {
+  if (place == nullptr) return false;
+  const std::int64_t from = place->seen_from_ns.load(std::memory_order_acquire);
+  return from != 0 && from > NowNs(thread);
+}
+
+bool IsHiddenFromLook(GuestThread& thread, int fd) {
+  OutsidePlace* place = OutsideOf(fd);
+  if (!IsHidden(thread, place)) return false;
+  Tell(thread, OutsideEvent::kLooks, fd);
+  return IsHidden(thread, place);
+}
+
+void BeginLookIntoSet(GuestThread& thread, int epoll_fd) {
+  if (IsAnythingOutside()) Tell(thread, OutsideEvent::kLooks, epoll_fd);
+}
+
+void BeginLooks(GuestThread& thread, const pollfd* fds, unsigned long count) {
+  if (!IsAnythingOutside()) return;
+  for (unsigned long i = 0; i < count; ++i) {
+    if ((fds[i].events & POLLIN) != 0) IsHiddenFromLook(thread, fds[i].fd);
+  }
+}
+
+long WithoutHidden(GuestThread& thread, pollfd* fds, unsigned long count, long found) {
+  if (found <= 0 || !IsAnythingOutside()) return found;
+  // Hanging up and errors come from there, too.
+  constexpr auto kFromOutside =
+      static_cast<short>(POLLIN | POLLRDNORM | POLLPRI | POLLRDHUP | POLLHUP | POLLERR);
+  for (unsigned long i = 0; i < count; ++i) {
+    if ((fds[i].revents & kFromOutside) == 0 || !IsHidden(thread, OutsideOf(fds[i].fd))) continue;
+    fds[i].revents = static_cast<short>(fds[i].revents & ~kFromOutside);
+    if (fds[i].revents == 0) --found;
+  }
+  return found;
+}
+
+HiddenMembers::HiddenMembers(GuestThread& thread, int epoll_fd) : epoll_fd_(epoll_fd) {
+  if (IsAnythingHidden(thread)) Read(thread);
+}
+
+// "tfd:        5 events:       19 data:                5  pos:0 ino:1f sdev:8"
+void HiddenMembers::Read(GuestThread& thread) {
+  const DescriptorPath path("/proc/self/fdinfo/", epoll_fd_);
+  const long file = RawSyscall(SYS_openat, AT_FDCWD, Arg(path.text), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  char text[512];
+  std::size_t size = 0;
+  for (long got = 1; got > 0 && count_ < kMost;) {
+    got = RawSyscall(SYS_read, file, Arg(text + size), static_cast<long>(sizeof text - 1 - size));
+    if (got > 0) size += static_cast<std::size_t>(got);
+    text[size] = '\0';
+    char* line = text;
+    for (char* end = nullptr; (end = strchr(line, '\n')) != nullptr; line = end + 1) {
+      *end = '\0';
+      const char* fd = SkipTo(line, "tfd:");
+      const char* events = SkipTo(line, "events:");
+      const char* data = SkipTo(line, "data:");
+      if (fd == nullptr || events == nullptr || data == nullptr || count_ == kMost) continue;
+      const auto number = static_cast<int>(NumberAt(fd, 10));
+      if (!IsHidden(thread, OutsideOf(number))) continue;
+      members_[count_++] = {number, static_cast<std::uint32_t>(NumberAt(events, 16)),
+                            NumberAt(data, 16)};
+    }
+    size = strlen(line);
+    memmove(text, line, size);
+    if (size == sizeof text - 1) break;  // no such line
+  }
+  RawSyscall(SYS_close, file);
+}
+
+// What tells of a member once only is set up anew.
+long HiddenMembers::TakeOut(epoll_event* events, long found) const {
+  long left = 0;
+  for (long i = 0; i < found; ++i) {
+    const Member* hidden = nullptr;
+    for (int k = 0; k < count_; ++k) {
+      if (members_[k].data == events[i].data.u64) hidden = &members_[k];
+    }
+    if (hidden == nullptr) {
+      events[left++] = events[i];
+      continue;
+    }
+    if ((hidden->events & (EPOLLET | EPOLLONESHOT)) != 0) {
+      epoll_event again{};
+      again.events = hidden->events;
+      again.data.u64 = hidden->data;
+      RawSyscall(SYS_epoll_ctl, epoll_fd_, EPOLL_CTL_MOD, hidden->fd, Arg(&again));
+    }
+  }
+  return found < 0 ? found : left;
+}
+
+bool IsDeviceOutside(const char* path) {
+  constexpr char kFolder[] = "/dev/";
+  constexpr std::size_t kFolderSize = sizeof kFolder - 1;
+  if (Current() == nullptr || !CanRead(path, kFolderSize) ||
+      memcmp(path, kFolder, kFolderSize) != 0) {
+    return false;
+  }
+  for (const char* device : {"nvidia", "kfd", "dri/", "accel", "video", "apex_", "davinci"}) {
+    if (strncmp(path + kFolderSize, device, strlen(device)) == 0) return true;
+  }
+  return false;
+}
+
+void NoteOpens(int fd) {
+  if (GuestThread* t = Current(); t != nullptr) Tell(*t, OutsideEvent::kConnects, fd);
+}
+
+void NoteConnects(GuestThread& thread, int fd) { Tell(thread, OutsideEvent::kConnects, fd); }
+
+void NoteAsks(GuestThread& thread, int fd, std::uint64_t begun_tsc) {
+  if (OutsideOf(fd) != nullptr) Tell(thread, OutsideEvent::kAsks, fd, begun_tsc);
+}
+
+void NoteTakes(GuestThread& thread, int fd) {
+  if (OutsideOf(fd) != nullptr) Tell(thread, OutsideEvent::kTakes, fd);
+}
+
+void NoteCloses(int fd) {
+  if (OutsideOf(fd) == nullptr) return;
+  if (GuestThread* t = Current(); t != nullptr) Tell(*t, OutsideEvent::kCloses, fd);
+}
+
+}  // namespace tcs::preload

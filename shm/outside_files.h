@@ -1,0 +1,66 @@
+// Files by which programs meet what is outside of the run: connected sockets whose peer is outside,
+// devices (GPUs, accelerators, cameras), and files that the scenario names. What comes by them
+// takes real time, and is to be seen at the virtual time that this real time stands for
+// (coordinator/calls/outside_waits.h).
+//
+// Written by the coordinator, read by all clients at any time; behind the rest of the run's memory
+// (own_receivers.h). A place that is used keeps its key until another file needs it.
+#pragma once
+
+#include <sys/stat.h>
+
+#include <atomic>
+#include <cstdint>
+
+namespace tcs::shm {
+
+// What the thread says in args[0] of NotificationKind::kOutside; args[1] is a descriptor.
+enum class OutsideEvent : std::int64_t {
+  kConnects = 1,  // it has been connected, or is being connected; or it is a device, and open now
+  kAsks = 2,      // the thread has sent by it; args[2]: the TSC before it did
+  kLooks = 3,     // it is about to look whether something is there: go on as with kRead
+  kTakes = 4,     // it has taken what was there
+  kCloses = 5,    // it is about to close it
+};
+
+struct OutsideFiles {
+  static constexpr std::uint32_t kPlaces = 128;
+  struct Place {
+    std::atomic<std::uint64_t> key;  // 0: free
+    // From then on what has come is to be seen, on the robots' clock; kOutsideUnknown: that is not
+    // known yet; kOutsideRests: nothing is waited for, and whoever looks begins to; 0: at once.
+    std::atomic<std::int64_t> seen_from_ns;
+  };
+  std::atomic<std::uint32_t> used;  // places; 0 as long as there is nothing outside
+  std::uint32_t reserved;
+  Place places[kPlaces];
+};
+
+inline constexpr std::int64_t kOutsideRests = INT64_MAX, kOutsideUnknown = INT64_MAX - 1;
+
+inline constexpr std::uint64_t kOutsideSocket = std::uint64_t{1} << 63;
+inline constexpr std::uint64_t kOutsideDevice = std::uint64_t{1} << 62;
+inline constexpr std::uint64_t kOutsideKeyMask = kOutsideDevice - 1;
+
+// Never 0. Every wait for such a file is for what is outside, but for sockets: these count once the
+// program has sent something by them.
+inline std::uint64_t OutsideKeyOf(const struct stat& status) {
+  if (S_ISSOCK(status.st_mode)) return kOutsideSocket | (status.st_ino & kOutsideKeyMask);
+  if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)) {
+    return kOutsideDevice | (status.st_rdev & kOutsideKeyMask);
+  }
+  const std::uint64_t mixed = (status.st_dev * 0x9e3779b97f4a7c15) ^ status.st_ino;
+  return (mixed & kOutsideKeyMask) | 1;
+}
+
+// Of the file; null: it is not among them.
+template <class Files>
+auto* OutsidePlaceOf(Files& files, std::uint64_t key) {
+  const std::uint32_t used = files.used.load(std::memory_order_acquire);
+  for (std::uint32_t i = 0; i < used && i < OutsideFiles::kPlaces; ++i) {
+    if (files.places[i].key.load(std::memory_order_acquire) == key) return &files.places[i];
+  }
+  return static_cast<decltype(&files.places[0])>(nullptr);
+}
+
+}  // namespace tcs::shm
