@@ -63,6 +63,17 @@ std::string InternetAddress::Text() const {
   return (is_six ? "[" + host + "]" : host) + ":" + std::to_string(port);
 }
 
+InternetAddress AddressIn(const sockaddr_storage& address) {
+  if (address.ss_family == AF_INET) {
+    sockaddr_in four;
+    memcpy(&four, &address, sizeof four);
+    return {TextOf(AF_INET, &four.sin_addr), ntohs(four.sin_port)};
+  }
+  sockaddr_in6 six;
+  memcpy(&six, &address, sizeof six);
+  return {TextOf(AF_INET6, &six.sin6_addr), ntohs(six.sin6_port)};
+}
+
 std::vector<InternetSocket> InternetSocketsOf(std::string_view table) {
   constexpr std::string_view kListens = "0A";
   std::vector<InternetSocket> sockets;
@@ -101,15 +112,12 @@ std::vector<std::string> OwnAddresses() {
   if (getifaddrs(&first) != 0) return addresses;
   for (const ifaddrs* each = first; each != nullptr; each = each->ifa_next) {
     if (each->ifa_addr == nullptr) continue;
-    if (each->ifa_addr->sa_family == AF_INET) {
-      sockaddr_in address;
-      memcpy(&address, each->ifa_addr, sizeof address);
-      addresses.push_back(TextOf(AF_INET, &address.sin_addr));
-    } else if (each->ifa_addr->sa_family == AF_INET6) {
-      sockaddr_in6 address;
-      memcpy(&address, each->ifa_addr, sizeof address);
-      addresses.push_back(TextOf(AF_INET6, &address.sin6_addr));
-    }
+    const int family = each->ifa_addr->sa_family;
+    if (family != AF_INET && family != AF_INET6) continue;
+    sockaddr_storage address{};
+    memcpy(&address, each->ifa_addr,
+           family == AF_INET ? sizeof(sockaddr_in) : sizeof(sockaddr_in6));
+    addresses.push_back(AddressIn(address).host);
   }
   freeifaddrs(first);
   return addresses;

@@ -2,6 +2,8 @@
 // for OwnAddresses.
 #pragma once
 
+#include <sys/socket.h>
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -19,6 +21,9 @@ struct InternetAddress {
   bool IsLoopback() const { return host.starts_with("127.") || host == "::1"; }
   bool operator==(const InternetAddress&) const = default;
 };
+
+// Of an IPv4 or IPv6 address.
+InternetAddress AddressIn(const sockaddr_storage& address);
 
 struct InternetSocket {
   InternetAddress local, remote;

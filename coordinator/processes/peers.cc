@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "coordinator/os/descendants.h"
+#include "coordinator/os/socket_server.h"
 #include "coordinator/os/socket_tables.h"
 
 namespace tcs {
@@ -64,36 +65,50 @@ bool Peers::IsOfRun(std::uint64_t inode) {
   return known->second;
 }
 
-// Who listens there is asked first: that is the same one for all its connections.
-std::optional<Peers::Peer> Peers::InternetPeer(const Process& process, int fd) {
+// One that is still being connected is in the kernel's tables only.
+std::optional<InternetAddress> Peers::RemoteOf(const Process& process, int fd, bool is_tcp,
+                                               sockaddr_storage* peer) {
+  socklen_t size = sizeof *peer;
+  if (getpeername(fd, reinterpret_cast<sockaddr*>(peer), &size) == 0) return AddressIn(*peer);
+  peer->ss_family = AF_UNSPEC;
   struct stat status;
   if (fstat(fd, &status) != 0) return std::nullopt;
-  const bool is_tcp = OptionOf(fd, SO_TYPE) == SOCK_STREAM;
-  const std::vector<InternetSocket> sockets = SocketsOf(process, is_tcp);
-  const auto own = std::find_if(sockets.begin(), sockets.end(), [&](const InternetSocket& each) {
-    return each.inode == status.st_ino;
-  });
-  if (own == sockets.end() || own->remote.port == 0) return std::nullopt;
-  const InternetAddress& remote = own->remote;
-  Peer peer{remote.Text()};
-  // Hosts of their own reach each other only.
-  if (run_.scenario.network.has_value()) return peer;
-  const std::vector<std::string> own_addresses = OwnAddresses();
-  const bool is_here = remote.IsLoopback() || std::find(own_addresses.begin(), own_addresses.end(),
-                                                        remote.host) != own_addresses.end();
-  if (!is_here) {
-    peer.is_outside = true;
-    return peer;
+  for (const InternetSocket& socket : SocketsOf(process, is_tcp)) {
+    if (socket.inode == status.st_ino && socket.remote.port != 0) return socket.remote;
   }
-  const auto serves = [&](const InternetSocket& each) {
-    return each.inode != 0 && each.inode != own->inode && each.local.port == remote.port &&
-           (each.local.host == remote.host || each.local.IsAny());
-  };
-  auto server = std::find_if(sockets.begin(), sockets.end(), [&](const InternetSocket& each) {
-    return serves(each) && (each.listens || !is_tcp);
-  });
-  if (server == sockets.end()) server = std::find_if(sockets.begin(), sockets.end(), serves);
-  peer.is_outside = server != sockets.end() && !IsOfRun(server->inode);
+  return std::nullopt;
+}
+
+// By its tables, where the kernel says it in no other way. Who listens there is asked first: that
+// is the same one for all connections.
+std::uint64_t Peers::ServerInTables(const Process& process, const InternetAddress& remote,
+                                    bool is_tcp) {
+  std::uint64_t server = 0;
+  for (const InternetSocket& each : SocketsOf(process, is_tcp)) {
+    const bool serves = each.inode != 0 && each.local.port == remote.port &&
+                        (each.local.host == remote.host || each.local.IsAny());
+    if (serves && (server == 0 || each.listens)) server = each.inode;
+  }
+  return server;
+}
+
+std::optional<Peers::Peer> Peers::InternetPeer(const Process& process, int fd) {
+  // Hosts of their own reach each other only.
+  if (run_.scenario.network.has_value()) return std::nullopt;
+  const bool is_tcp = OptionOf(fd, SO_TYPE) == SOCK_STREAM;
+  sockaddr_storage address{};
+  const std::optional<InternetAddress> remote = RemoteOf(process, fd, is_tcp, &address);
+  if (!remote.has_value()) return std::nullopt;
+  Peer peer{remote->Text()};
+  if (!remote->IsLoopback()) {
+    const std::vector<std::string> own = OwnAddresses();
+    peer.is_outside = std::find(own.begin(), own.end(), remote->host) == own.end();
+    if (peer.is_outside) return peer;
+  }
+  std::optional<std::uint64_t> server;
+  if (address.ss_family != AF_UNSPEC) server = ServerOf(fd, address);
+  if (!server.has_value()) server = ServerInTables(process, *remote, is_tcp);
+  peer.is_outside = *server != 0 && !IsOfRun(*server);
   return peer;
 }
 
@@ -114,7 +129,8 @@ std::optional<Peers::Peer> Peers::UnixPeer(const Process& process, int fd) {
   ucred maker{};
   socklen_t maker_size = sizeof maker;
   getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &maker, &maker_size);
-  if (maker.pid == getpid()) return peer;
+  // Who has made the listener is asked first, which costs less than to look for it.
+  if (maker.pid == getpid() || run_.table.LivingProcess(maker.pid) != nullptr) return peer;
   const std::vector<UnixSocket> sockets = UnixSocketsOf(TableOf(process, "unix"));
   const bool is_stream = OptionOf(fd, SO_TYPE) != SOCK_DGRAM;
   const auto server = std::find_if(sockets.begin(), sockets.end(), [&](const UnixSocket& each) {

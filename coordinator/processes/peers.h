@@ -3,11 +3,14 @@
 // For the coordinator's thread only.
 #pragma once
 
+#include <sys/socket.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <unordered_map>
 
+#include "coordinator/os/socket_tables.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {
@@ -29,6 +32,10 @@ class Peers {
   bool IsOfRun(std::uint64_t inode);
 
  private:
+  static std::optional<InternetAddress> RemoteOf(const Process& process, int fd, bool is_tcp,
+                                                 sockaddr_storage* peer);
+  static std::uint64_t ServerInTables(const Process& process, const InternetAddress& remote,
+                                      bool is_tcp);
   std::optional<Peer> InternetPeer(const Process& process, int fd);
   std::optional<Peer> UnixPeer(const Process& process, int fd);
 

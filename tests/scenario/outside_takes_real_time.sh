@@ -116,9 +116,12 @@ for _ in range(1000):
     time.sleep(max(0, due - time.monotonic()))
 print(f"{time.monotonic() - begun:.3f}")
 PY
+# Runs have the processors, and the server is to be as quick as one on another computer.
+on_time=(chrt -f 50)
+"${on_time[@]}" true 2>/dev/null || on_time=()
 serve() {  # SECONDS
   rm -f ready
-  python3 server.py "$1" 27519 & outside+=("$!")
+  "${on_time[@]}" python3 server.py "$1" 27519 & outside+=("$!")
   for _ in $(seq 200); do [[ -e ready ]] && return; sleep 0.05; done
   fail "the server does not begin"
 }
@@ -164,7 +167,7 @@ for name in fast slow; do
   timeout 100 "$tcsim" run s.yaml --out "$name" >said 2>&1 || fail "$name: $(cat said)"
   is_right "$name" "$name/r-client.out.log" 0.001
   [[ $(cat "$name/r-ticker.out.log") == 1.000 ]] || fail "$name: ticks took $(cat "$name/r-ticker.out.log") s"
-  grep -Eq '^r/client waited [0-9.]+ s for 20 answers from outside of the run, [0-9.]+ ms each$' said || fail "$(cat said)"
+  grep -Eq '^r/client waited [0-9.]+ s for [0-9]+ answers from outside of the run, [0-9.]+ ms each$' said || fail "$(cat said)"
   for robot in a b c; do printf '  %s: %s\n' "$robot" "$burner" >>s.yaml; done
 done
 
