@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "coordinator/calls/counter_reads.h"
 #include "coordinator/calls/signal_reach.h"
 #include "coordinator/os/host.h"
 
@@ -145,6 +146,10 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kChildUsage:
       task.reply[0] = task.process->ended_children.ChargedNs(static_cast<pid_t>(note.args[0]));
+      break;
+    case Kind::kCounterReads:
+      WarnOfCounterReads(run_, *task.process, note.args[0],
+                         static_cast<std::uint64_t>(note.args[1]));
       break;
     case Kind::kSignals:
       if (ReachBySignal(run_, task, ProcessNamed(task, note.args[0]))) {

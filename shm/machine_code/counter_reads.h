@@ -27,6 +27,7 @@ inline std::size_t CounterReadSize(Code at, Code end) {
 // True where what follows the read puts the two halves of the counter together, as compilers and
 // people write it: there the bytes are the instruction, whatever function they are in.
 inline bool TakesUpCounter(Code read, Code end) {
+  if (end == nullptr) return false;
   constexpr std::uint8_t kUpperHalf[] = {0x48, 0xc1, 0xe2, 0x20};  // shl $32, %rdx
   Code at = read + CounterReadSize(read, end);
   for (int i = 0; i < 3; ++i) {
@@ -61,14 +62,18 @@ void ForEachLookingLikeARead(CodeRange code, const Found& found) {
 // Calls `found` with the target of whatever may be a jump or branch with 32 bits.
 template <class Found>
 void ForEachLongTarget(CodeRange code, const Found& found) {
-  const __m128i jump = _mm_set1_epi8(static_cast<char>(0xe9)), branch = _mm_set1_epi8(0x0f);
+  const __m128i jump = _mm_set1_epi8(static_cast<char>(0xe9)), two_bytes = _mm_set1_epi8(0x0f);
+  const __m128i upper = _mm_set1_epi8(static_cast<char>(0xf0)),
+                branch = _mm_set1_epi8(static_cast<char>(0x80));
   for (Code at = code.begin; code.end - at >= 32; at += 16) {
     const __m128i these = _mm_loadu_si128(reinterpret_cast<const __m128i*>(at));
-    int hits =
-        _mm_movemask_epi8(_mm_or_si128(_mm_cmpeq_epi8(these, jump), _mm_cmpeq_epi8(these, branch)));
+    const __m128i next = _mm_loadu_si128(reinterpret_cast<const __m128i*>(at + 1));
+    const __m128i is_branch = _mm_and_si128(_mm_cmpeq_epi8(these, two_bytes),
+                                            _mm_cmpeq_epi8(_mm_and_si128(next, upper), branch));
+    int hits = _mm_movemask_epi8(_mm_or_si128(_mm_cmpeq_epi8(these, jump), is_branch));
     for (; hits != 0; hits &= hits - 1) {
-      Code to = at + __builtin_ctz(static_cast<unsigned>(hits)) + 1;
-      if (to[-1] == 0x0f && (*to++ & 0xf0) != 0x80) continue;
+      const Code opcode = at + __builtin_ctz(static_cast<unsigned>(hits));
+      const Code to = opcode + (*opcode == 0x0f ? 2 : 1);
       std::int32_t relative;
       memcpy(&relative, to, sizeof relative);
       found(to + 4 + relative);
@@ -89,6 +94,23 @@ struct Replacement {
 enum class NotReplaced : std::uint8_t { kNo, kIsNoInstruction, kCodeIsUnknown, kNoRoom };
 
 namespace machine_code {
+
+// True where the bytes at `at` are surely the midst of an instruction: decoding comes into step
+// with a function's instructions wherever it begins, after a few of them, and no way there leads to
+// `at`. Spares decoding a long function from its begin for most places that only look like a read.
+inline bool IsWithinAnother(CodeRange function, Code at) {
+  constexpr int kWay = 128, kWays = 5;
+  if (at - function.begin <= kWay) return false;
+  for (int i = 0; i < kWays; ++i) {
+    Code on_way = at - kWay + i;
+    while (on_way < at) {
+      const Instruction one = Decode(on_way, function.end);
+      on_way += one.size == 0 ? 1 : one.size;
+    }
+    if (on_way == at) return false;
+  }
+  return true;
+}
 
 // The instructions around a read, in a function that has been decoded from its begin to its end.
 class Neighbourhood {
@@ -207,7 +229,11 @@ class ReplacementPlan {
   // `function`: the one that has the read. `targets`: what else is known to be jumped to.
   NotReplaced Next(CodeRange function, Code read, const Code* targets, std::size_t target_count,
                    Replacement* replacement) {
+    if (function.IsEmpty() && TakesUpCounter(read, functions_.GapAround(read).end)) {
+      function = functions_.GapAround(read);  // of a function in assembly language
+    }
     if (function.IsEmpty()) return NotReplaced::kCodeIsUnknown;
+    if (machine_code::IsWithinAnother(function, read)) return NotReplaced::kIsNoInstruction;
     const machine_code::Neighbourhood around(function, read);
     if (!around.has_read()) {
       return around.is_whole() ? NotReplaced::kIsNoInstruction : NotReplaced::kCodeIsUnknown;

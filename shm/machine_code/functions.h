@@ -47,6 +47,14 @@ class UnwindTable {
     return function.Contains(at) ? function : CodeRange{};
   }
 
+  // What is between two functions, around `at`: padding, or code that the table does not know.
+  CodeRange GapAround(Code at) const {
+    const std::uint32_t next = FirstAfter(at);
+    if (next == 0 || next == count_) return {};
+    const CodeRange before = FunctionOf(next - 1);
+    return before.IsEmpty() || before.end > at ? CodeRange{} : CodeRange{before.end, Begin(next)};
+  }
+
   // What lies between a function's end and the next one's begin; nothing can be said of the last.
   CodeRange GapAfter(const CodeRange& function) const {
     const std::uint32_t next = FirstAfter(function.begin);
