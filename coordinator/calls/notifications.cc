@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "coordinator/calls/counter_reads.h"
+#include "coordinator/processes/counter_reads.h"
 #include "coordinator/calls/signal_reach.h"
 #include "coordinator/os/host.h"
 

@@ -6,8 +6,12 @@
 
 #include <sys/types.h>
 
+#include <map>
 #include <set>
+#include <string>
+#include <tuple>
 
+#include "coordinator/os/counter_patches.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {
@@ -22,7 +26,14 @@ class BarePrograms {
   bool TakeUnknown(pid_t pid) { return unknown_.erase(pid) != 0; }
 
  private:
+  // A file as it was: where it is, when it last changed, and its size.
+  using FileKey = std::tuple<std::uint64_t, std::uint64_t, std::int64_t, std::int64_t>;
+
+  void LeadClocks(pid_t pid, const Process* process, const std::string& name);
+  void LeadCounter(pid_t pid, const Process* process, const std::string& name);
+
   RunState& run_;
+  std::map<FileKey, CounterPatches> counter_patches_;
   std::set<pid_t> unknown_;
 };
 

@@ -26,15 +26,14 @@ inline std::size_t CounterReadSize(Code at, Code end) {
 
 // True where what follows the read puts the two halves of the counter together, as compilers and
 // people write it: there the bytes are the instruction, whatever function they are in.
-inline bool TakesUpCounter(Code read, Code end) {
-  if (end == nullptr) return false;
+inline bool TakesUpCounter(CodeRange code, Code read) {
   constexpr std::uint8_t kUpperHalf[] = {0x48, 0xc1, 0xe2, 0x20};  // shl $32, %rdx
-  Code at = read + CounterReadSize(read, end);
-  for (int i = 0; i < 3; ++i) {
-    const Instruction one = Decode(at, end);
+  Code at = read + CounterReadSize(read, code.end);
+  for (int i = 0; i < 4 && code.Contains(at); ++i) {
+    const Instruction one = Decode(at, code.end);
     if (one.size == sizeof kUpperHalf && memcmp(at, kUpperHalf, one.size) == 0) return true;
-    if (one.size == 0 || one.flow != Flow::kNext) return false;
-    at += one.size;
+    if (one.size == 0 || (one.flow != Flow::kNext && one.flow != Flow::kJump)) return false;
+    at = one.flow == Flow::kJump ? one.Target(at) : at + one.size;
   }
   return false;
 }
@@ -219,56 +218,5 @@ inline Code RoomFor(CodeRange padding, Code read, Code taken_until) {
 }
 
 }  // namespace machine_code
-
-// How reads are replaced, one after the other as they lie in the code, so that none is in the way
-// of another.
-class ReplacementPlan {
- public:
-  explicit ReplacementPlan(const UnwindTable& functions) : functions_(functions) {}
-
-  // `function`: the one that has the read. `targets`: what else is known to be jumped to.
-  NotReplaced Next(CodeRange function, Code read, const Code* targets, std::size_t target_count,
-                   Replacement* replacement) {
-    if (function.IsEmpty() && TakesUpCounter(read, functions_.GapAround(read).end)) {
-      function = functions_.GapAround(read);  // of a function in assembly language
-    }
-    if (function.IsEmpty()) return NotReplaced::kCodeIsUnknown;
-    if (machine_code::IsWithinAnother(function, read)) return NotReplaced::kIsNoInstruction;
-    const machine_code::Neighbourhood around(function, read);
-    if (!around.has_read()) {
-      return around.is_whole() ? NotReplaced::kIsNoInstruction : NotReplaced::kCodeIsUnknown;
-    }
-    if (!around.is_whole()) return NotReplaced::kCodeIsUnknown;
-    for (int before = 0; before <= machine_code::Neighbourhood::kBefore; ++before) {
-      const Replacement one{read, around.From(before), nullptr};
-      if (one.moved.IsEmpty() || one.moved.begin < taken_until_) continue;
-      bool is_entered = around.IsEntered(one);
-      for (std::size_t i = 0; i < target_count; ++i) is_entered |= one.IsEnteredBy(targets[i]);
-      if (is_entered) continue;
-      taken_until_ = one.moved.end;
-      *replacement = one;
-      return NotReplaced::kNo;
-    }
-    return IntoPadding(function, read, replacement);
-  }
-
- private:
-  NotReplaced IntoPadding(CodeRange function, Code read, Replacement* replacement) {
-    const CodeRange gaps[] = {functions_.GapAfter(function), functions_.GapBefore(function)};
-    for (const CodeRange& gap : gaps) {
-      const CodeRange padding = machine_code::PaddingIn(gap);
-      const Code room = machine_code::RoomFor(padding, read, padding_until_);
-      if (room == nullptr || read < taken_until_) continue;
-      padding_until_ = room + kJumpSize;
-      taken_until_ = read + CounterReadSize(read, function.end);
-      *replacement = {read, {read, taken_until_}, room};
-      return NotReplaced::kNo;
-    }
-    return NotReplaced::kNoRoom;
-  }
-
-  const UnwindTable& functions_;
-  Code taken_until_ = nullptr, padding_until_ = nullptr;
-};
 
 }  // namespace tcs::shm

@@ -52,7 +52,8 @@ class UnwindTable {
     const std::uint32_t next = FirstAfter(at);
     if (next == 0 || next == count_) return {};
     const CodeRange before = FunctionOf(next - 1);
-    return before.IsEmpty() || before.end > at ? CodeRange{} : CodeRange{before.end, Begin(next)};
+    if (before.IsEmpty() || before.end > at) return {};
+    return {before.end, Begin(next)};
   }
 
   // What lies between a function's end and the next one's begin; nothing can be said of the last.

@@ -1,4 +1,4 @@
-#include "shm/machine_code/counter_reads.h"
+#include "shm/machine_code/replacement_plan.h"
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ struct Function {
   }
   NotReplaced Plan(Replacement* replacement, std::vector<Code> targets = {}) const {
     const UnwindTable none;
-    ReplacementPlan plan(none);
-    return plan.Next(range(), First(), targets.data(), targets.size(), replacement);
+    ReplacementPlan plan(range(), none);
+    return plan.NextIn(range(), First(), targets.data(), targets.size(), replacement);
   }
   // The range that is moved, as places in the function.
   std::pair<long, long> Moved(std::vector<Code> targets = {}) const {
@@ -103,20 +103,20 @@ TEST(CounterReads, DoNotOverlap) {
   // rdtsc; mov %eax, %ecx; rdtsc; nop; nop; nop; ret
   const Function function{{0x0f, 0x31, 0x89, 0xc1, 0x0f, 0x31, 0x90, 0x90, 0x90, 0xc3}};
   const UnwindTable none;
-  ReplacementPlan plan(none);
+  ReplacementPlan plan({}, none);
   Replacement first, second;
-  EXPECT_EQ(plan.Next(function.range(), function.bytes.data(), nullptr, 0, &first),
+  EXPECT_EQ(plan.NextIn(function.range(), function.bytes.data(), nullptr, 0, &first),
             NotReplaced::kNoRoom);
-  EXPECT_EQ(plan.Next(function.range(), function.bytes.data() + 4, nullptr, 0, &second),
+  EXPECT_EQ(plan.NextIn(function.range(), function.bytes.data() + 4, nullptr, 0, &second),
             NotReplaced::kNo);
   EXPECT_EQ(second.moved.begin, function.bytes.data() + 4);
 }
 
 TEST(CounterReads, ThatAreTakenUpAreInstructions) {
   const Function read{{0x0f, 0x31, 0x89, 0xc0, 0x48, 0xc1, 0xe2, 0x20}};
-  EXPECT_TRUE(TakesUpCounter(read.bytes.data(), read.range().end));
+  EXPECT_TRUE(TakesUpCounter(read.range(), read.bytes.data()));
   const Function none{{0x0f, 0x31, 0xc3, 0x48, 0xc1, 0xe2, 0x20}};
-  EXPECT_FALSE(TakesUpCounter(none.bytes.data(), none.range().end));
+  EXPECT_FALSE(TakesUpCounter(none.range(), none.bytes.data()));
 }
 
 TEST(CounterReads, GoIntoWhatFillsAGap) {

@@ -40,8 +40,8 @@ long Replaced(const std::vector<std::uint8_t>& bytes, std::size_t function_size,
   ForEachLookingLikeARead(function, [&](Code at) { read = at; });
   const UnwindTable none;
   Replacement replacement;
-  ReplacementPlan plan(none);
-  if (plan.Next(function, read, nullptr, 0, &replacement) != NotReplaced::kNo) return -1;
+  ReplacementPlan plan(function, none);
+  if (plan.NextIn(function, read, nullptr, 0, &replacement) != NotReplaced::kNo) return -1;
   CodeWriter writer(pages.stand_ins(), pages.stand_ins(), kPage);
   WriteStandIn(writer, replacement, [](CodeWriter& code) {
     code.Bytes({0xb8, 7, 0, 0, 0, 0xba, 9, 0, 0, 0});

@@ -1,4 +1,4 @@
-#include "coordinator/calls/counter_reads.h"
+#include "coordinator/processes/counter_reads.h"
 
 #include <fmt/format.h>
 
