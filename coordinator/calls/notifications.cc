@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "coordinator/processes/counter_reads.h"
 #include "coordinator/calls/signal_reach.h"
 #include "coordinator/os/host.h"
+#include "coordinator/processes/counter_reads.h"
 
 namespace tcs {
 
@@ -149,7 +149,8 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kCounterReads:
       WarnOfCounterReads(run_, *task.process, note.args[0],
-                         static_cast<std::uint64_t>(note.args[1]));
+                         static_cast<std::uint64_t>(note.args[1]),
+                         "build that code with -fasynchronous-unwind-tables");
       break;
     case Kind::kSignals:
       if (ReachBySignal(run_, task, ProcessNamed(task, note.args[0]))) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 #include "coordinator/os/auxiliary_vector.h"
 #include "coordinator/os/unique_fd.h"
@@ -47,7 +48,29 @@ namespace {
 using shm::Code;
 using shm::CodeRange;
 
-// A file's segments as they lie in memory.
+struct Section {
+  std::uint64_t address = 0, size = 0;
+};
+
+bool Read(int fd, void* to, std::size_t size, std::uint64_t offset) {
+  return pread(fd, to, size, static_cast<off_t>(offset)) == static_cast<ssize_t>(size);
+}
+
+// The section with the entries for unwinding; empty: there is none.
+Section UnwindSection(int fd, const Elf64_Ehdr& header) {
+  if (header.e_shentsize != sizeof(Elf64_Shdr) || header.e_shstrndx >= header.e_shnum) return {};
+  std::vector<Elf64_Shdr> sections(header.e_shnum);
+  if (!Read(fd, sections.data(), sections.size() * sizeof(Elf64_Shdr), header.e_shoff)) return {};
+  for (const Elf64_Shdr& one : sections) {
+    char name[sizeof ".eh_frame"] = {};
+    if (!Read(fd, name, sizeof name, sections[header.e_shstrndx].sh_offset + one.sh_name)) continue;
+    if (memcmp(name, ".eh_frame", sizeof name) == 0) return {one.sh_addr, one.sh_size};
+  }
+  return {};
+}
+
+// A file's segments as they lie in memory. Behind them is a table of its functions for those that
+// have none, as static programs.
 class LaidOut {
  public:
   explicit LaidOut(const std::string& path) {
@@ -70,7 +93,11 @@ class LaidOut {
       most = std::max(most, one.p_vaddr + one.p_filesz + kPage);
     }
     if (most <= least || most - least > kMostSize) return;
-    size_ = most - least;
+    const Section unwind = UnwindSection(file.get(), header);
+    const bool has_section = unwind.address >= least && unwind.size < most - least &&
+                             unwind.address + unwind.size <= most;
+    const std::size_t table_at = most - least;
+    size_ = table_at + kPage + (has_section ? unwind.size : 0);
     void* at = mmap(nullptr, size_, PROT_READ | PROT_WRITE,
                     MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (at == MAP_FAILED) return;
@@ -82,6 +109,11 @@ class LaidOut {
       }
     }
     image_ = {memory_ - least, segments_.data(), segments_.size()};
+    functions_ = image_.Functions();
+    if (image_.Segment(PT_GNU_EH_FRAME) == nullptr && has_section) {
+      ListFunctions({image_.At(unwind.address), image_.At(unwind.address + unwind.size)},
+                    memory_ + table_at);
+    }
   }
   ~LaidOut() {
     if (memory_ != nullptr) munmap(memory_, size_);
@@ -91,27 +123,50 @@ class LaidOut {
 
   // Without segments where the file is no such program.
   const shm::Image& image() const { return image_; }
+  const shm::UnwindTable& functions() const { return functions_; }
 
   static constexpr std::uint64_t kPage = 4096;
 
  private:
   static constexpr std::uint64_t kMostSize = 1 << 30;
 
-  static bool Read(int fd, void* to, std::size_t size, std::uint64_t offset) {
-    return pread(fd, to, size, static_cast<off_t>(offset)) == static_cast<ssize_t>(size);
+  // Writes such a table as linkers make, at `to`, where there is room.
+  void ListFunctions(CodeRange entries, std::uint8_t* to) {
+    constexpr std::size_t kLeastEntry = 16;
+    std::vector<std::pair<std::int32_t, std::int32_t>> list;  // begin and entry, from the table
+    std::uint32_t size = 0, of_common = 0;
+    for (Code at = entries.begin; entries.end - at > std::ptrdiff_t{kLeastEntry};
+         at += sizeof size + size) {
+      memcpy(&size, at, sizeof size);
+      memcpy(&of_common, at + 4, sizeof of_common);
+      if (size == 0 || size > static_cast<std::size_t>(entries.end - at)) break;
+      std::int32_t begin = 0;
+      memcpy(&begin, at + 8, sizeof begin);
+      if (of_common != 0) {
+        list.emplace_back(static_cast<std::int32_t>(at + 8 + begin - to),
+                          static_cast<std::int32_t>(at - to));
+      }
+    }
+    std::ranges::sort(list);
+    const auto count = static_cast<std::uint32_t>(list.size());
+    const std::uint8_t head[] = {1, 0x1b, 0x03, 0x3b, 0, 0, 0, 0};
+    memcpy(to, head, sizeof head);
+    memcpy(to + 8, &count, sizeof count);
+    memcpy(to + 12, list.data(), list.size() * sizeof list[0]);
+    functions_ = shm::UnwindTable(to, {memory_, memory_ + size_}, image_.Whole());
   }
 
   std::vector<Elf64_Phdr> segments_;
   std::uint8_t* memory_ = nullptr;
   std::size_t size_ = 0;
   shm::Image image_;
+  shm::UnwindTable functions_;
 };
 
 std::vector<std::uint8_t> ReadFunction(std::uint64_t ticks_per_ns_q32) {
   std::vector<std::uint8_t> function(tcs_counter_of_kernel, tcs_counter_of_kernel_end);
   const auto rate_end = static_cast<std::size_t>(tcs_counter_rate_end - tcs_counter_of_kernel);
-  memcpy(&function[rate_end - sizeof ticks_per_ns_q32], &ticks_per_ns_q32,
-         sizeof ticks_per_ns_q32);
+  memcpy(&function[rate_end - sizeof ticks_per_ns_q32], &ticks_per_ns_q32, sizeof ticks_per_ns_q32);
   return function;
 }
 
@@ -132,7 +187,8 @@ class Segment {
     const Code reads = place_;
     const bool has_function = Put(function);
     for (std::size_t i = 0; i < found.count(); ++i) {
-      if (!has_function || !Lead(found[i], reads)) patches_->left.push_back(AddressOf(found[i].read));
+      if (!has_function || !Lead(found[i], reads))
+        patches_->left.push_back(AddressOf(found[i].read));
     }
   }
 
@@ -163,10 +219,10 @@ class Segment {
     bytes.resize(writer.size());
     const Code stand_in = place_;
     if (!writer.is_sound() || !Put(bytes)) return false;
-    return shm::LeadToStandIn(
-        replacement, stand_in, [&](Code at, const std::uint8_t* what, std::size_t size) {
-          patches_->patches.push_back({AddressOf(at), {what, what + size}});
-        });
+    return shm::LeadToStandIn(replacement, stand_in,
+                              [&](Code at, const std::uint8_t* what, std::size_t size) {
+                                patches_->patches.push_back({AddressOf(at), {what, what + size}});
+                              });
   }
 
   const shm::Image& image_;
@@ -180,11 +236,10 @@ CounterPatches PatchesOf(const std::string& executable, std::uint64_t ticks_per_
   CounterPatches patches;
   const LaidOut file(executable);
   const shm::Image& image = file.image();
-  const shm::UnwindTable functions = image.Functions();
   const auto room = std::make_unique<shm::PlanRoom>();
   image.ForEachCode([&](CodeRange code, const Elf64_Phdr& header) {
     shm::Replacements found(*room);
-    found.Plan(code, functions, [&](Code read) {
+    found.Plan(code, file.functions(), [&](Code read) {
       patches.left.push_back(static_cast<std::uint64_t>(read - image.base));
     });
     if (found.count() > 0) Segment(image, code, header, &patches).Add(found, ticks_per_ns_q32);

@@ -16,7 +16,7 @@ struct CounterPatches {
     std::uint64_t address = 0;  // in its file
     std::vector<std::uint8_t> bytes;
   };
-  std::vector<Patch> patches;  // in this order
+  std::vector<Patch> patches;       // in this order
   std::vector<std::uint64_t> left;  // addresses of reads that are as they were
 };
 

@@ -83,9 +83,9 @@ void BarePrograms::LeadCounter(pid_t pid, const Process* process, const std::str
                     file.st_mtim.tv_sec * 1'000'000'000 + file.st_mtim.tv_nsec, file.st_size};
   auto known = counter_patches_.find(key);
   if (known == counter_patches_.end()) {
-    known = counter_patches_
-                .emplace(key, PatchesOf(executable, run_.header->counter_ticks_per_ns_q32))
-                .first;
+    known =
+        counter_patches_.emplace(key, PatchesOf(executable, run_.header->counter_ticks_per_ns_q32))
+            .first;
   }
   std::uint64_t first_left = 0;
   if (!WritePatches(pid, known->second, &first_left)) {
@@ -95,7 +95,7 @@ void BarePrograms::LeadCounter(pid_t pid, const Process* process, const std::str
               "or -static-pie)");
   } else if (first_left != 0 && process != nullptr) {
     WarnOfCounterReads(run_, *process, static_cast<std::int64_t>(known->second.left.size()),
-                       first_left);
+                       first_left, "link it dynamically (without -static or -static-pie)");
   }
 }
 

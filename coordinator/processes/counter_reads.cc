@@ -27,14 +27,14 @@ std::string PlaceOf(pid_t pid, std::uint64_t address) {
 }  // namespace
 
 void WarnOfCounterReads(RunState& run, const Process& process, std::int64_t places,
-                        std::uint64_t first) {
+                        std::uint64_t first, const char* mend) {
   if (std::exchange(process.client->counter_warned, true)) return;
   const std::string more = places > 1 ? fmt::format(" and {} more places", places - 1) : "";
   run.Warn(fmt::format(
       "{} reads the processor's cycle counter (rdtsc) in {}{}, where tcs cannot replace the "
-      "instruction, so what it reads there is the host's time; if it does no harm say so with "
-      "`rdtsc: host`, else build that code with unwind tables (-fasynchronous-unwind-tables)",
-      process.name, PlaceOf(process.pid, first), more));
+      "instruction, so what it reads there is the host's time; {}, or say with `rdtsc: host` that "
+      "it does no harm",
+      process.name, PlaceOf(process.pid, first), more, mend));
 }
 
 }  // namespace tcs

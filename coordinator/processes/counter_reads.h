@@ -10,8 +10,9 @@
 
 namespace tcs {
 
-// Warns once for a client. `first`: an address in the program, the first of so many places.
+// Warns once for a client. `first`: an address in the program, the first of so many places;
+// `mend`: what its user can do.
 void WarnOfCounterReads(RunState& run, const Process& process, std::int64_t places,
-                        std::uint64_t first);
+                        std::uint64_t first, const char* mend);
 
 }  // namespace tcs

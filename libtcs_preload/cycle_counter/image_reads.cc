@@ -19,8 +19,8 @@ constexpr std::size_t kPage = 4096;
 class Room {
  public:
   Room() {
-    const long at = RawSyscall(SYS_mmap, 0, kSize, PROT_READ | PROT_WRITE,
-                               MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    const long at =
+        RawSyscall(SYS_mmap, 0, kSize, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (at > 0) room_ = reinterpret_cast<shm::PlanRoom*>(at);
   }
   ~Room() {
@@ -64,8 +64,8 @@ class Writable {
   const bool is_writable_;
 };
 
-void Replace(const shm::Replacements& found, CodeRange image, CodeRange code, const Elf64_Phdr& segment,
-             LeftReads* left) {
+void Replace(const shm::Replacements& found, CodeRange image, CodeRange code,
+             const Elf64_Phdr& segment, LeftReads* left) {
   StandIns stand_ins(image, found.count());
   const auto leave = [&] {
     for (std::size_t i = 0; i < found.count(); ++i) left->Add(found[i].read);

@@ -112,8 +112,9 @@ class Replacements {
         room_.replacements[count_++] = one;
         return;
       }
-      const bool is_read = why == NotReplaced::kCodeIsUnknown ? TakesUpCounter(code, read)
-                                                              : why != NotReplaced::kIsNoInstruction;
+      const bool is_read = why == NotReplaced::kCodeIsUnknown
+                               ? TakesUpCounter(code, read)
+                               : why != NotReplaced::kIsNoInstruction;
       if (is_read && left_count_ < PlanRoom::kMostReads) room_.left[left_count_++] = read;
     });
   }

@@ -25,8 +25,8 @@ inline CodeRange FunctionBetweenFillers(CodeRange code, Code at) {
     const Instruction one = Decode(here, code.end);
     if (one.size == 0) return {};
     here += one.size;
-    const bool goes_on = one.flow == Flow::kNext || one.flow == Flow::kBranch ||
-                         one.flow == Flow::kCall;
+    const bool goes_on =
+        one.flow == Flow::kNext || one.flow == Flow::kBranch || one.flow == Flow::kCall;
     if (!goes_on && here > at && here < code.end && *here == kFiller) return {begin, here};
   }
   return {};

@@ -1,8 +1,8 @@
-#include "shm/machine_code/replacement_plan.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "shm/machine_code/replacement_plan.h"
 
 namespace tcs::shm {
 namespace {
