@@ -193,7 +193,7 @@ class Segment {
   }
 
  private:
-  static constexpr std::size_t kMostOfOne = 96;
+  static constexpr std::size_t kMostOfOne = 160;
 
   std::uint64_t AddressOf(Code at) const { return static_cast<std::uint64_t>(at - image_.base); }
 
@@ -209,12 +209,12 @@ class Segment {
   bool Lead(const shm::Replacement& replacement, Code reads) {
     std::vector<std::uint8_t> bytes(kMostOfOne);
     shm::CodeWriter writer(bytes.data(), place_, bytes.size());
-    shm::WriteStandIn(writer, replacement, [&](shm::CodeWriter& code) {
+    shm::WriteStandIn(writer, replacement, [&](shm::CodeWriter& code, Code read) {
       code.Bytes({0x48, 0x8d, 0x64, 0x24, 0x80});           // lea -128(%rsp), %rsp
       code.Leading({0xe8}, reads);                          // call
       code.Bytes({0x48, 0x8d, 0xa4, 0x24, 0x80, 0, 0, 0});  // lea 128(%rsp), %rsp
       // Of rdtscp: the first processor.
-      if (replacement.read[1] != 0x31) code.Bytes({0xb9, 0, 0, 0, 0});  // mov $0, %ecx
+      if (read[1] != 0x31) code.Bytes({0xb9, 0, 0, 0, 0});  // mov $0, %ecx
     });
     bytes.resize(writer.size());
     const Code stand_in = place_;

@@ -13,7 +13,7 @@ using shm::Code;
 using shm::CodeRange;
 using shm::CodeWriter;
 
-constexpr std::size_t kPage = 4096, kMostOfOne = 96;
+constexpr std::size_t kPage = 4096, kMostOfOne = 128;
 constexpr std::int64_t kReach = 0x7000'0000;  // less than a jump's, by more than an image's slack
 
 // At the begin of it, where its code finds them.
@@ -72,9 +72,9 @@ StandIns::StandIns(CodeRange image, std::size_t reads) {
 Code StandIns::Add(const shm::Replacement& replacement) {
   std::uint8_t* const place = memory_ + used_;
   CodeWriter writer(place, place, size_ - used_);
-  shm::WriteStandIn(writer, replacement, [&](CodeWriter& code) {
+  shm::WriteStandIn(writer, replacement, [&](CodeWriter& code, Code read) {
     const std::size_t entry =
-        replacement.read[1] == 0x31 ? offsetof(Entries, plain) : offsetof(Entries, with_processor);
+        read[1] == 0x31 ? offsetof(Entries, plain) : offsetof(Entries, with_processor);
     code.Bytes(kPassRedZone);
     code.Leading(kCallAtAddress, memory_ + entry);
     code.Bytes(kBack);

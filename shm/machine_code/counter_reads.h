@@ -82,7 +82,7 @@ void ForEachLongTarget(CodeRange code, const Found& found) {
 
 struct Replacement {
   Code read = nullptr;
-  CodeRange moved;         // the read, and what goes with it to another place
+  CodeRange moved;         // the read, and what goes with it to another place, reads among it
   Code padding = nullptr;  // where the long jump goes; null: to the begin of `moved`
 
   // True where a jump to `target` would come into the midst of what is replaced.
@@ -90,7 +90,13 @@ struct Replacement {
 };
 
 // Why a read cannot be replaced.
-enum class NotReplaced : std::uint8_t { kNo, kIsNoInstruction, kCodeIsUnknown, kNoRoom };
+enum class NotReplaced : std::uint8_t {
+  kNo,
+  kWithAnother,  // it is: it goes with the one before it
+  kIsNoInstruction,
+  kCodeIsUnknown,
+  kNoRoom
+};
 
 namespace machine_code {
 
@@ -180,8 +186,7 @@ class Neighbourhood {
 
   bool CanMove(int i, bool is_last) const {
     const Instruction& one = what_[i];
-    if (!one.is_movable || CounterReadSize(at_[i], function_.end) != 0) return false;
-    return is_last || one.flow == Flow::kNext || one.flow == Flow::kBranch;
+    return one.is_movable && (is_last || one.flow == Flow::kNext || one.flow == Flow::kBranch);
   }
 
   const CodeRange function_;

@@ -36,6 +36,7 @@ class ReplacementPlan {
       return around.is_whole() ? NotReplaced::kIsNoInstruction : NotReplaced::kCodeIsUnknown;
     }
     if (!around.is_whole()) return NotReplaced::kCodeIsUnknown;
+    if (read < taken_until_) return NotReplaced::kWithAnother;
     for (int before = 0; before <= machine_code::Neighbourhood::kBefore; ++before) {
       const Replacement one{read, around.From(before), nullptr};
       if (one.moved.IsEmpty() || one.moved.begin < taken_until_) continue;
@@ -55,7 +56,7 @@ class ReplacementPlan {
     for (const CodeRange& gap : gaps) {
       const CodeRange padding = machine_code::PaddingIn(gap);
       const Code room = machine_code::RoomFor(padding, read, padding_until_);
-      if (room == nullptr || read < taken_until_) continue;
+      if (room == nullptr) continue;
       padding_until_ = room + kJumpSize;
       taken_until_ = read + CounterReadSize(read, function.end);
       *replacement = {read, {read, taken_until_}, room};
@@ -114,7 +115,7 @@ class Replacements {
       }
       const bool is_read = why == NotReplaced::kCodeIsUnknown
                                ? TakesUpCounter(code, read)
-                               : why != NotReplaced::kIsNoInstruction;
+                               : why == NotReplaced::kNoRoom || why == NotReplaced::kNo;
       if (is_read && left_count_ < PlanRoom::kMostReads) room_.left[left_count_++] = read;
     });
   }

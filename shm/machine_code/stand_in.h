@@ -72,19 +72,18 @@ class CodeWriter {
   bool is_sound_ = true;
 };
 
-// Writes it, with what `read` writes in the read's place.
+// Writes it, with what `write_read(writer, at)` writes in place of a read at `at`.
 template <class WriteRead>
 void WriteStandIn(CodeWriter& writer, const Replacement& replacement, const WriteRead& write_read) {
   const CodeRange& moved = replacement.moved;
   bool goes_on = true;
   for (Code at = moved.begin; at < moved.end;) {
-    if (at == replacement.read) {
-      write_read(writer);
-      at += CounterReadSize(at, moved.end);
-      continue;
-    }
     const Instruction one = Decode(at, moved.end);
-    writer.Move(one, at);
+    if (one.size == CounterReadSize(at, moved.end)) {
+      write_read(writer, at);
+    } else {
+      writer.Move(one, at);
+    }
     goes_on = one.flow == Flow::kNext || one.flow == Flow::kBranch;
     at += one.size;
   }

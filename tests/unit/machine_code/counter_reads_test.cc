@@ -99,17 +99,17 @@ TEST(CounterReads, HeedWhatIsKnownToLeadIntoThem) {
   EXPECT_EQ(function.Moved({function.bytes.data() + 5}), (Range{0, 5}));
 }
 
-TEST(CounterReads, DoNotOverlap) {
+TEST(CounterReads, GoWithEachOther) {
   // rdtsc; mov %eax, %ecx; rdtsc; nop; nop; nop; ret
   const Function function{{0x0f, 0x31, 0x89, 0xc1, 0x0f, 0x31, 0x90, 0x90, 0x90, 0xc3}};
   const UnwindTable none;
   ReplacementPlan plan({}, none);
   Replacement first, second;
   EXPECT_EQ(plan.NextIn(function.range(), function.bytes.data(), nullptr, 0, &first),
-            NotReplaced::kNoRoom);
-  EXPECT_EQ(plan.NextIn(function.range(), function.bytes.data() + 4, nullptr, 0, &second),
             NotReplaced::kNo);
-  EXPECT_EQ(second.moved.begin, function.bytes.data() + 4);
+  EXPECT_EQ(first.moved.end, function.bytes.data() + 6);
+  EXPECT_EQ(plan.NextIn(function.range(), function.bytes.data() + 4, nullptr, 0, &second),
+            NotReplaced::kWithAnother);
 }
 
 TEST(CounterReads, ThatAreTakenUpAreInstructions) {

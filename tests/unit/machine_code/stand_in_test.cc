@@ -37,13 +37,13 @@ long Replaced(const std::vector<std::uint8_t>& bytes, std::size_t function_size,
   memcpy(pages.function(), bytes.data(), bytes.size());
   const CodeRange function{pages.function(), pages.function() + function_size};
   Code read = nullptr;
-  ForEachLookingLikeARead(function, [&](Code at) { read = at; });
+  ForEachLookingLikeARead(function, [&](Code at) { read = read == nullptr ? at : read; });
   const UnwindTable none;
   Replacement replacement;
   ReplacementPlan plan(function, none);
   if (plan.NextIn(function, read, nullptr, 0, &replacement) != NotReplaced::kNo) return -1;
   CodeWriter writer(pages.stand_ins(), pages.stand_ins(), kPage);
-  WriteStandIn(writer, replacement, [](CodeWriter& code) {
+  WriteStandIn(writer, replacement, [](CodeWriter& code, Code) {
     code.Bytes({0xb8, 7, 0, 0, 0, 0xba, 9, 0, 0, 0});
   });
   EXPECT_TRUE(writer.is_sound());
@@ -59,6 +59,11 @@ constexpr long kRead = 9L << 32 | 7;
 TEST(StandIn, DoesWhatTheFunctionDid) {
   // rdtsc; shl $32, %rdx; or %rdx, %rax; ret
   EXPECT_EQ(Replaced({0x0f, 0x31, 0x48, 0xc1, 0xe2, 0x20, 0x48, 0x09, 0xd0, 0xc3}, 10, 0), kRead);
+}
+
+TEST(StandIn, HasAllReadsThatGoTogether) {
+  // rdtsc; mov %eax, %ecx; rdtsc; add %ecx, %eax; ret
+  EXPECT_EQ(Replaced({0x0f, 0x31, 0x89, 0xc1, 0x0f, 0x31, 0x01, 0xc8, 0xc3}, 9, 0), 14);
 }
 
 TEST(StandIn, ReturnsWhereTheFunctionDid) {
