@@ -2,7 +2,6 @@
 
 #include <sys/mman.h>
 
-#include "libtcs_preload/cycle_counter/stand_ins.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/machine_code/replacement_plan.h"
 
@@ -65,7 +64,7 @@ class Writable {
 };
 
 void Replace(const shm::Replacements& found, CodeRange image, CodeRange code,
-             const Elf64_Phdr& segment, LeftReads* left) {
+             const Elf64_Phdr& segment, LeftReads* left, StandInMemory** memory) {
   StandIns stand_ins(image, found.count());
   const auto leave = [&] {
     for (std::size_t i = 0; i < found.count(); ++i) left->Add(found[i].read);
@@ -83,11 +82,11 @@ void Replace(const shm::Replacements& found, CodeRange image, CodeRange code,
                                           });
     if (!leads) left->Add(found[i].read);
   }
-  stand_ins.Finish();
+  stand_ins.Finish(memory);
 }
 
 void ReplaceIn(const shm::Image& image, const shm::UnwindTable& functions, CodeRange code,
-               const Elf64_Phdr& segment, LeftReads* left) {
+               const Elf64_Phdr& segment, LeftReads* left, StandInMemory** memory) {
   bool looks_like_one = false;
   shm::ForEachLookingLikeARead(code, [&](Code) { looks_like_one = true; });
   if (!looks_like_one) return;
@@ -95,16 +94,18 @@ void ReplaceIn(const shm::Image& image, const shm::UnwindTable& functions, CodeR
   if (room.get() == nullptr) return;
   shm::Replacements found(*room.get());
   found.Plan(code, functions, [left](Code read) { left->Add(read); });
-  if (found.count() > 0) Replace(found, image.Whole(), code, segment, left);
+  if (found.count() > 0) Replace(found, image.Whole(), code, segment, left, memory);
 }
 
 }  // namespace
 
-void ReplaceReads(const shm::Image& image, LeftReads* left) {
+StandInMemory* ReplaceReads(const shm::Image& image, LeftReads* left) {
+  StandInMemory* memory = nullptr;
   const shm::UnwindTable functions = image.Functions();
   image.ForEachCode([&](CodeRange code, const Elf64_Phdr& segment) {
-    ReplaceIn(image, functions, code, segment, left);
+    ReplaceIn(image, functions, code, segment, left, &memory);
   });
+  return memory;
 }
 
 }  // namespace tcs::preload

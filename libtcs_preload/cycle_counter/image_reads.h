@@ -1,6 +1,7 @@
 // The reads of the cycle counter in one image: found, and replaced.
 #pragma once
 
+#include "libtcs_preload/cycle_counter/stand_ins.h"
 #include "shm/machine_code/image.h"
 
 namespace tcs::preload {
@@ -15,7 +16,7 @@ struct LeftReads {
 };
 
 // No thread executes code of the image meanwhile, but for this one, elsewhere. Its segments must
-// not change.
-void ReplaceReads(const shm::Image& image, LeftReads* left);
+// not change. What stands in for its reads.
+StandInMemory* ReplaceReads(const shm::Image& image, LeftReads* left);
 
 }  // namespace tcs::preload

@@ -20,39 +20,57 @@ constexpr long kPage = 4096;
 // come to its place. For the thread that has the loader's lock.
 class Known {
  public:
-  bool Has(const link_map& loaded) const {
-    for (std::size_t i = 0; i < count_; ++i) {
-      if (list_[i].base == loaded.l_addr && list_[i].dynamic == loaded.l_ld) return true;
+  // Calls `look(loaded)` with each that is new, which returns what stands in for its reads.
+  template <class Look>
+  void Update(const r_debug& loader, const Look& look) {
+    ++round_;
+    std::size_t next = 0;
+    for (const link_map* one = loader.r_map; one != nullptr; one = one->l_next) {
+      const std::size_t i = Find(*one, next);
+      if (i == count_ && count_ < kMost) list_[count_++] = {one->l_addr, one->l_ld, look(*one), 0};
+      if (i < count_) list_[i].seen = round_;
+      next = i + 1;
     }
-    return false;
+    ForgetUnseen();
   }
 
-  void Add(const link_map& loaded) {
-    if (count_ < kMost) list_[count_++] = {loaded.l_addr, loaded.l_ld};
+ private:
+  // Those beyond are left as they are.
+  static constexpr std::size_t kMost = 2048;
+  struct One {
+    Elf64_Addr base;
+    const Elf64_Dyn* dynamic;
+    StandInMemory* stand_ins;
+    std::uint64_t seen;
+
+    bool Is(const link_map& loaded) const {
+      return base == loaded.l_addr && dynamic == loaded.l_ld;
+    }
+  };
+
+  // The loader's list mostly has the same order. count_: it is not there.
+  std::size_t Find(const link_map& loaded, std::size_t likely) const {
+    if (likely < count_ && list_[likely].Is(loaded)) return likely;
+    std::size_t i = 0;
+    while (i < count_ && !list_[i].Is(loaded)) ++i;
+    return i;
   }
 
-  // Only what is in the loader's list still.
-  void Keep(const r_debug& loader) {
+  void ForgetUnseen() {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count_; ++i) {
-      for (const link_map* one = loader.r_map; one != nullptr; one = one->l_next) {
-        if (one->l_addr != list_[i].base || one->l_ld != list_[i].dynamic) continue;
+      if (list_[i].seen == round_) {
         list_[kept++] = list_[i];
-        break;
+      } else {
+        Free(list_[i].stand_ins);
       }
     }
     count_ = kept;
   }
 
- private:
-  // More are looked through each time that something is loaded.
-  static constexpr std::size_t kMost = 2048;
-  struct One {
-    Elf64_Addr base;
-    const Elf64_Dyn* dynamic;
-  };
   One list_[kMost] = {};
   std::size_t count_ = 0;
+  std::uint64_t round_ = 0;
 };
 
 Known g_known;
@@ -72,12 +90,9 @@ void LookThrough(const r_debug& loader) {
   LeftReads left;
   {
     const ShimsOwnTime own_time;
-    g_known.Keep(loader);
-    for (const link_map* one = loader.r_map; one != nullptr; one = one->l_next) {
-      if (g_known.Has(*one)) continue;
-      g_known.Add(*one);
-      if (IsOthersCode(*one)) ReplaceReads(ImageOf(loader, *one), &left);
-    }
+    g_known.Update(loader, [&](const link_map& loaded) -> StandInMemory* {
+      return IsOthersCode(loaded) ? ReplaceReads(ImageOf(loader, loaded), &left) : nullptr;
+    });
   }
   TellOf(left);
 }

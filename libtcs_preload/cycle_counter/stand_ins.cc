@@ -7,6 +7,14 @@
 
 namespace tcs::preload {
 
+// At the begin of the memory, where its code finds the entries.
+struct StandInMemory {
+  void (*plain)() = tcs_read_counter;
+  void (*with_processor)() = tcs_read_counter_and_processor;
+  StandInMemory* next = nullptr;
+  std::size_t size = 0;
+};
+
 namespace {
 
 using shm::Code;
@@ -15,12 +23,6 @@ using shm::CodeWriter;
 
 constexpr std::size_t kPage = 4096, kMostOfOne = 128;
 constexpr std::int64_t kReach = 0x7000'0000;  // less than a jump's, by more than an image's slack
-
-// At the begin of it, where its code finds them.
-struct Entries {
-  void (*plain)() = tcs_read_counter;
-  void (*with_processor)() = tcs_read_counter_and_processor;
-};
 
 bool Reaches(const std::uint8_t* memory, std::size_t size, CodeRange image) {
   return memory + size - image.begin < kReach && image.end - memory < kReach;
@@ -61,22 +63,23 @@ constexpr std::uint8_t kCallAtAddress[] = {0xff, 0x15};
 }  // namespace
 
 StandIns::StandIns(CodeRange image, std::size_t reads) {
-  size_ = (sizeof(Entries) + reads * kMostOfOne + kPage - 1) / kPage * kPage;
-  memory_ = MapNear(image, size_);
-  if (memory_ == nullptr) return;
-  const Entries entries;
-  memcpy(memory_, &entries, sizeof entries);
-  used_ = sizeof entries;
+  size_ = (sizeof(StandInMemory) + reads * kMostOfOne + kPage - 1) / kPage * kPage;
+  std::uint8_t* const at = MapNear(image, size_);
+  if (at == nullptr) return;
+  memory_ = reinterpret_cast<StandInMemory*>(at);
+  *memory_ = StandInMemory{.size = size_};
+  used_ = sizeof(StandInMemory);
 }
 
 Code StandIns::Add(const shm::Replacement& replacement) {
-  std::uint8_t* const place = memory_ + used_;
+  std::uint8_t* const begin = reinterpret_cast<std::uint8_t*>(memory_);
+  std::uint8_t* const place = begin + used_;
   CodeWriter writer(place, place, size_ - used_);
   shm::WriteStandIn(writer, replacement, [&](CodeWriter& code, Code read) {
     const std::size_t entry =
-        read[1] == 0x31 ? offsetof(Entries, plain) : offsetof(Entries, with_processor);
+        read[1] == 0x31 ? offsetof(StandInMemory, plain) : offsetof(StandInMemory, with_processor);
     code.Bytes(kPassRedZone);
-    code.Leading(kCallAtAddress, memory_ + entry);
+    code.Leading(kCallAtAddress, begin + entry);
     code.Bytes(kBack);
   });
   if (!writer.is_sound()) return nullptr;
@@ -84,9 +87,19 @@ Code StandIns::Add(const shm::Replacement& replacement) {
   return place;
 }
 
-bool StandIns::Finish() {
+bool StandIns::Finish(StandInMemory** list) {
+  memory_->next = *list;
+  *list = memory_;
   return RawSyscall(SYS_mprotect, Arg(memory_), static_cast<long>(size_), PROT_READ | PROT_EXEC) ==
          0;
+}
+
+void Free(StandInMemory* first) {
+  while (first != nullptr) {
+    StandInMemory* const next = first->next;
+    RawSyscall(SYS_munmap, Arg(first), static_cast<long>(first->size));
+    first = next;
+  }
 }
 
 }  // namespace tcs::preload
