@@ -114,7 +114,8 @@ enum class NotificationKind : std::uint32_t {
                   // or with a descriptor that leaves its own: go on as with kWrite, and once that
                   // robot has looked for the last time without waiting for others
   kCounterReads = 39,  // code of the program reads the processor's cycle counter and could not be
-                       // led to the virtual one; args[0]: in how many places, args[1]: the first
+                       // led to the virtual one; args[0]: in how many places, args[1]: the
+                       // first, args[2]: WhereReads
   kChildUsage = 38,    // args[0]: pid of a child that has ended; reply[0]: what it and its own
                        // children were charged, ns; -1: not known
 };
@@ -168,6 +169,12 @@ enum class WaitKey : std::uint32_t {
   kBacklogs = 3,
   kTerminals = 4,
   kKernelWaits = 5
+};
+
+// Code that reads the cycle counter.
+enum class WhereReads : std::int64_t {
+  kInFile = 0,      // of the program or a library
+  kInMadeCode = 1,  // made at run time
 };
 
 // What a timer runs on, and what it does besides making a descriptor readable. A sigset's bit 0 is

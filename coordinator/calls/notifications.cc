@@ -148,9 +148,10 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       task.reply[0] = task.process->ended_children.ChargedNs(static_cast<pid_t>(note.args[0]));
       break;
     case Kind::kCounterReads:
-      WarnOfCounterReads(run_, *task.process, note.args[0],
-                         static_cast<std::uint64_t>(note.args[1]),
-                         "build that code with -fasynchronous-unwind-tables");
+      WarnOfCounterReads(run_, *task.process,
+                         {.places = note.args[0],
+                          .first = static_cast<std::uint64_t>(note.args[1]),
+                          .where = static_cast<shm::WhereReads>(note.args[2])});
       break;
     case Kind::kSignals:
       if (ReachBySignal(run_, task, ProcessNamed(task, note.args[0]))) {

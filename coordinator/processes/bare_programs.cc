@@ -94,8 +94,9 @@ void BarePrograms::LeadCounter(pid_t pid, const Process* process, const std::str
               "kernel does not let tcs change the program; link it dynamically (without -static "
               "or -static-pie)");
   } else if (first_left != 0 && process != nullptr) {
-    WarnOfCounterReads(run_, *process, static_cast<std::int64_t>(known->second.left.size()),
-                       first_left, "link it dynamically (without -static or -static-pie)");
+    WarnOfCounterReads(
+        run_, *process,
+        {.places = static_cast<std::int64_t>(known->second.left.size()), .first = first_left});
   }
 }
 

@@ -24,17 +24,26 @@ std::string PlaceOf(pid_t pid, std::uint64_t address) {
   return fmt::format("its memory at {:#x}", address);
 }
 
+const char* MendOf(const Process& process, shm::WhereReads where) {
+  if (where == shm::WhereReads::kInMadeCode) return "have it compile before it runs";
+  return process.is_bare ? "link it dynamically (without -static or -static-pie)"
+                         : "build that code with -fasynchronous-unwind-tables";
+}
+
 }  // namespace
 
-void WarnOfCounterReads(RunState& run, const Process& process, std::int64_t places,
-                        std::uint64_t first, const char* mend) {
+void WarnOfCounterReads(RunState& run, const Process& process, const CounterReads& reads) {
   if (std::exchange(process.client->counter_warned, true)) return;
-  const std::string more = places > 1 ? fmt::format(" and {} more places", places - 1) : "";
+  const bool is_made = reads.where == shm::WhereReads::kInMadeCode;
+  const std::string place =
+      is_made ? "code that it makes as it runs" : PlaceOf(process.pid, reads.first);
+  const std::string more =
+      reads.places > 1 ? fmt::format(" and {} more places", reads.places - 1) : "";
   run.Warn(fmt::format(
       "{} reads the processor's cycle counter (rdtsc) in {}{}, where tcs cannot replace the "
       "instruction, so what it reads there is the host's time; {}, or say with `rdtsc: host` that "
       "it does no harm",
-      process.name, PlaceOf(process.pid, first), more, mend));
+      process.name, place, more, MendOf(process, reads.where)));
 }
 
 }  // namespace tcs

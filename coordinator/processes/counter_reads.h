@@ -7,12 +7,18 @@
 #include <cstdint>
 
 #include "coordinator/tasks/run_state.h"
+#include "shm/layout.h"
 
 namespace tcs {
 
-// Warns once for a client. `first`: an address in the program, the first of so many places;
-// `mend`: what its user can do.
-void WarnOfCounterReads(RunState& run, const Process& process, std::int64_t places,
-                        std::uint64_t first, const char* mend);
+// Where reads of it are that are the processor's still.
+struct CounterReads {
+  std::int64_t places = 0;
+  std::uint64_t first = 0;  // an address in the program
+  shm::WhereReads where = shm::WhereReads::kInFile;
+};
+
+// Warns once for a client.
+void WarnOfCounterReads(RunState& run, const Process& process, const CounterReads& reads);
 
 }  // namespace tcs

@@ -6,7 +6,6 @@
 #include "libtcs_preload/cycle_counter/image_reads.h"
 #include "libtcs_preload/cycle_counter/loaded_images.h"
 #include "libtcs_preload/cycle_counter/shims_own_time.h"
-#include "libtcs_preload/exchange.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/machine_code/counter_reads.h"
 
@@ -76,16 +75,6 @@ class Known {
 Known g_known;
 const r_debug* g_loader = nullptr;
 
-void TellOf(const LeftReads& left) {
-  static bool told = false;
-  GuestThread* thread = IfAttached();
-  if (left.count == 0 || told || thread == nullptr) return;
-  told = true;
-  Exchange(*thread, Request{.kind = shm::NotificationKind::kCounterReads,
-                            .args = {static_cast<std::int64_t>(left.count),
-                                     reinterpret_cast<std::int64_t>(left.first)}});
-}
-
 void LookThrough(const r_debug& loader) {
   LeftReads left;
   {
@@ -94,7 +83,7 @@ void LookThrough(const r_debug& loader) {
       return IsOthersCode(loaded) ? ReplaceReads(ImageOf(loader, loaded), &left) : nullptr;
     });
   }
-  TellOf(left);
+  TellOfReads(left, WhereReads::kInFile);
 }
 
 // The loader calls a function that does nothing whenever its list has changed, so that debuggers

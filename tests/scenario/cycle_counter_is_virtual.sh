@@ -65,6 +65,29 @@ said=$(timeout 60 "$tcsim" exec -- sh -c "$work/closed; $work/closed" 2>&1 | wit
 said=$(timeout 60 "$tcsim" exec --rdtsc host -- sh -c "$work/closed" 2>&1 | without_waits)
 [[ $said == 0 ]] || fail "the host's counter is warned of: $said"
 
+# Code that is made as the program runs; the first piece does not read the counter.
+cat >"$work/maker.c" <<'C'
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+static unsigned long Run(const char* code, int size) {
+  char* at = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  memcpy(at, code, size);
+  mprotect(at, 4096, PROT_READ | PROT_EXEC);
+  return ((unsigned long (*)(void))at)();
+}
+int main(void) {
+  printf("%lu\n", Run("\xb8\x0f\x31\x00\x00\xc3", 6));
+  fflush(stdout);
+  printf("%d\n", Run("\x0f\x31\x48\xc1\xe2\x20\x48\x09\xd0\xc3", 10) > 0);
+}
+C
+cc -O1 -o "$work/maker" "$work/maker.c"
+said=$(timeout 60 "$tcsim" exec -- "$work/maker" 2>&1 | without_waits)
+[[ $said == "12559"*"maker reads the processor's cycle counter (rdtsc) in code that it makes as it runs, where"*$'\n1' ]] || fail "code that is made: $said"
+said=$(timeout 60 "$tcsim" exec --rdtsc host -- "$work/maker" 2>&1 | without_waits)
+[[ $said == $'12559\n1' ]] || fail "code that is made, by the host's counter: $said"
+
 cat >"$work/scenario.yaml" <<END
 duration: 1h
 robots: {r: {clients: {c: {command: [$work/dynamic], rdtsc: host}}}}
