@@ -87,9 +87,6 @@ void Replace(const shm::Replacements& found, CodeRange image, CodeRange code,
 
 void ReplaceIn(const shm::Image& image, const shm::UnwindTable& functions, CodeRange code,
                const Elf64_Phdr& segment, LeftReads* left, StandInMemory** memory) {
-  bool looks_like_one = false;
-  shm::ForEachLookingLikeARead(code, [&](Code) { looks_like_one = true; });
-  if (!looks_like_one) return;
   const Room room;
   if (room.get() == nullptr) return;
   shm::Replacements found(*room.get());

@@ -30,7 +30,6 @@ class ReplacementPlan {
   NotReplaced NextIn(CodeRange function, Code read, const Code* targets, std::size_t target_count,
                      Replacement* replacement) {
     if (function.IsEmpty()) return NotReplaced::kCodeIsUnknown;
-    if (machine_code::IsWithinAnother(function, read)) return NotReplaced::kIsNoInstruction;
     const machine_code::Neighbourhood around(function, read);
     if (!around.has_read()) {
       return around.is_whole() ? NotReplaced::kIsNoInstruction : NotReplaced::kCodeIsUnknown;
@@ -74,9 +73,10 @@ class ReplacementPlan {
 struct PlanRoom {
   static constexpr std::size_t kMostReads = 1024, kMostTargets = 256;
 
+  Code reads[kMostReads];
   Replacement replacements[kMostReads];
-  Code targets[kMostTargets];
   Code left[kMostReads];
+  Code targets[kMostTargets];
 };
 
 // All replacements in some code, which nothing elsewhere in it jumps into.
@@ -91,7 +91,15 @@ class Replacements {
   template <class Left>
   void Plan(CodeRange code, const UnwindTable& functions, const Left& left) {
     constexpr int kMostPlans = 8;
-    target_count_ = 0;
+    read_count_ = target_count_ = 0;
+    ForEachLookingLikeARead(code, [&](Code at) {
+      const CodeRange function = functions.FunctionAt(at);
+      const bool may_be = function.IsEmpty() ? TakesUpCounter(code, at)
+                                             : !machine_code::IsWithinAnother(function, at);
+      if (!may_be) return;
+      if (read_count_ == PlanRoom::kMostReads) return left(at);
+      room_.reads[read_count_++] = at;
+    });
     bool is_entered = true;
     for (int i = 0; is_entered && i < kMostPlans; ++i) {
       PlanOnce(code, functions);
@@ -106,18 +114,18 @@ class Replacements {
   void PlanOnce(CodeRange code, const UnwindTable& functions) {
     count_ = left_count_ = 0;
     ReplacementPlan plan(code, functions);
-    ForEachLookingLikeARead(code, [&](Code read) {
+    for (std::size_t i = 0; i < read_count_; ++i) {
+      const Code read = room_.reads[i];
       Replacement one;
       const NotReplaced why = plan.Next(read, room_.targets, target_count_, &one);
-      if (why == NotReplaced::kNo && count_ < PlanRoom::kMostReads) {
+      if (why == NotReplaced::kNo) {
         room_.replacements[count_++] = one;
-        return;
+        continue;
       }
-      const bool is_read = why == NotReplaced::kCodeIsUnknown
-                               ? TakesUpCounter(code, read)
-                               : why == NotReplaced::kNoRoom || why == NotReplaced::kNo;
-      if (is_read && left_count_ < PlanRoom::kMostReads) room_.left[left_count_++] = read;
-    });
+      const bool is_read = why == NotReplaced::kCodeIsUnknown ? TakesUpCounter(code, read)
+                                                              : why == NotReplaced::kNoRoom;
+      if (is_read) room_.left[left_count_++] = read;
+    }
   }
 
   // True if something elsewhere in the code jumps into what is to be replaced; the next plan knows.
@@ -146,7 +154,7 @@ class Replacements {
   }
 
   PlanRoom& room_;
-  std::size_t count_ = 0, target_count_ = 0, left_count_ = 0;
+  std::size_t read_count_ = 0, count_ = 0, target_count_ = 0, left_count_ = 0;
 };
 
 }  // namespace tcs::shm

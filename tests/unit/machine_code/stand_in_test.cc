@@ -6,6 +6,8 @@
 #include <cstring>
 #include <vector>
 
+#include "shm/machine_code/replacement_plan.h"
+
 namespace tcs::shm {
 namespace {
 
