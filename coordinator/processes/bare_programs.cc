@@ -55,15 +55,20 @@ void BarePrograms::Begins(pid_t pid) {
     first->end_word = 0;  // that of the program before
     first->can_be_stopped = false;
   }
-  // What the kernel has drawn for it, as the shim does for others.
-  const auto random = told.find(AT_RANDOM);
-  if (run_.IsFixed() && process != nullptr && random != told.end()) {
-    std::array<std::uint8_t, 16> drawn{};
-    process->draws.Fill(drawn.data(), drawn.size());
-    WriteMemory(pid, random->second, drawn.data(), drawn.size());
-  }
+  if (run_.IsFixed()) RepeatKernelsDraws(pid, told);
   LeadClocks(pid, process, name);
   LeadCounter(pid, process, name);
+}
+
+// As the shim does for others. Whether the process is known by now must not show: one sequence is
+// for all.
+void BarePrograms::RepeatKernelsDraws(pid_t pid,
+                                      const std::map<std::uint64_t, std::uint64_t>& told) {
+  const auto at = told.find(AT_RANDOM);
+  if (at == told.end()) return;
+  std::array<std::uint8_t, 16> drawn{};
+  draws_.Fill(drawn.data(), drawn.size());
+  WriteMemory(pid, at->second, drawn.data(), drawn.size());
 }
 
 void BarePrograms::LeadClocks(pid_t pid, const Process* process, const std::string& name) {
