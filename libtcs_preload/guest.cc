@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libtcs_preload/attach.h"
+#include "libtcs_preload/cycle_counter/lead_reads.h"
 #include "libtcs_preload/environment.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/porter.h"
@@ -59,6 +60,7 @@ GuestThread* CurrentSlow() {
   g_process->mode = ProcessState::kAttached;
   SeedProcess(*t_thread.slot);
   if (t_thread.slot->patch_vdso != 0) PatchVdso();
+  if (t_thread.slot->leads_counter != 0) LeadCounterReads();
   return &t_thread;
 }
 

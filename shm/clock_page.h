@@ -34,6 +34,11 @@ inline std::int64_t MulQ32(std::int64_t a, std::uint64_t q) {
   return static_cast<std::int64_t>((static_cast<Wide>(a) * static_cast<Wide>(q)) >> 32);
 }
 
+// What the virtual cycle counter shows when CLOCK_MONOTONIC does `monotonic_ns`.
+inline std::uint64_t CounterAt(std::int64_t monotonic_ns, std::uint64_t ticks_per_ns_q32) {
+  return static_cast<std::uint64_t>(MulQ32(monotonic_ns, ticks_per_ns_q32));
+}
+
 // One consistent reading. `time_ns` is what the thread has truly reached: neither held back to the
 // horizon nor kept from going below what was shown before.
 struct ClockReading {

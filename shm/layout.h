@@ -36,7 +36,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 25;
+inline constexpr std::uint32_t kVersion = 26;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -114,10 +114,13 @@ enum class NotificationKind : std::uint32_t {
   kReaches = 36,  // the thread is about to reach a local socket of robot args[0], from another one
                   // or with a descriptor that leaves its own: go on as with kWrite, and once that
                   // robot has looked for the last time without waiting for others
-  kChildUsage = 38,  // args[0]: pid of a child that has ended; reply[0]: what it and its own
-                     // children were charged, ns; -1: not known
-  kOutside = 39,     // of a file by which the program may meet what is outside of the run; args: an
-                     // OutsideEvent, and what it says (outside_files.h)
+  kCounterReads = 39,  // code of the program reads the processor's cycle counter and could not be
+                       // led to the virtual one; args[0]: in how many places, args[1]: the
+                       // first, args[2]: WhereReads
+  kChildUsage = 38,    // args[0]: pid of a child that has ended; reply[0]: what it and its own
+                       // children were charged, ns; -1: not known
+  kOutside = 40,       // of a file by which the program may meet what is outside of the run; args: an
+                       // OutsideEvent, and what it says (outside_files.h)
 };
 
 // The signal by which the coordinator stops a thread that computes, where only gates keep threads
@@ -169,6 +172,12 @@ enum class WaitKey : std::uint32_t {
   kBacklogs = 3,
   kTerminals = 4,
   kKernelWaits = 5
+};
+
+// Code that reads the cycle counter.
+enum class WhereReads : std::int64_t {
+  kInFile = 0,      // of the program or a library
+  kInMadeCode = 1,  // made at run time
 };
 
 // What a timer runs on, and what it does besides making a descriptor readable. A sigset's bit 0 is
@@ -351,12 +360,16 @@ struct alignas(64) ThreadSlot {
   // Written by the thread: how many descriptors it has closed or replaced, as far as the shim sees
   // it.
   std::atomic<std::uint32_t> descriptors_changed;
+  // Written by the coordinator at the attach: 1: reads of the cycle counter are to be led to the
+  // virtual one.
+  std::uint32_t leads_counter;
   alignas(64) Postbox postbox;
 };
 static_assert(sizeof(ThreadSlot) == 5376);
 static_assert(offsetof(ThreadSlot, datagrams) == 1216);
 static_assert(offsetof(ThreadSlot, announces) == 3272);
 static_assert(offsetof(ThreadSlot, descriptors_changed) == 3276);
+static_assert(offsetof(ThreadSlot, leads_counter) == 3280);
 static_assert(offsetof(ThreadSlot, postbox) == 3328);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
@@ -401,10 +414,13 @@ struct alignas(64) RunHeader {
   // 1: threads may have turns before their order; signals to other processes are told of
   // (kSignals).
   std::uint32_t turns_beside;
-  std::uint64_t reserved[4];
+  // The virtual cycle counter's rate, times 2^32 (clock_page.h).
+  std::uint64_t counter_ticks_per_ns_q32;
+  std::uint64_t reserved[3];
 };
 static_assert(sizeof(RunHeader) == 128);
 static_assert(offsetof(RunHeader, monotonic_offset_ns) == 32);
+static_assert(offsetof(RunHeader, counter_ticks_per_ns_q32) == 96);
 
 // What only the coordinator writes.
 struct RunMemory {

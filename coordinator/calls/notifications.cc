@@ -11,6 +11,7 @@
 
 #include "coordinator/calls/signal_reach.h"
 #include "coordinator/os/host.h"
+#include "coordinator/processes/counter_reads.h"
 
 namespace tcs {
 
@@ -149,6 +150,12 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kChildUsage:
       task.reply[0] = task.process->ended_children.ChargedNs(static_cast<pid_t>(note.args[0]));
+      break;
+    case Kind::kCounterReads:
+      WarnOfCounterReads(run_, *task.process,
+                         {.places = note.args[0],
+                          .first = static_cast<std::uint64_t>(note.args[1]),
+                          .where = static_cast<shm::WhereReads>(note.args[2])});
       break;
     case Kind::kSignals:
       if (ReachBySignal(run_, task, ProcessNamed(task, note.args[0]))) {

@@ -107,6 +107,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
   client.name = command[0];
   client.command = command;
   client.patch_vdso = arguments.patch_vdso;
+  client.cycle_counter = arguments.cycle_counter;
   client.dds = arguments.dds;
   if (call_cost.has_value()) client.fixed_call_cost = *call_cost;
   for (const std::string& text : arguments.outside) {

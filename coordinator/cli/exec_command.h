@@ -13,6 +13,7 @@ struct ExecArguments {
   double speed = 1.0;  // of each core
   int cores = 1;
   bool patch_vdso = true;
+  CycleCounter cycle_counter = CycleCounter::kVirtual;
   std::string call_cost;  // of one call under fixed accounting, such as 100ns; empty: as by default
   std::string allocation_cost;  // of one allocation, the same
   DdsTransport dds = DdsTransport::kEndpoints;

@@ -217,6 +217,12 @@ int main(int argc, char** argv) {
   exec->add_flag("--patch-vdso,!--no-patch-vdso", patch_vdso,
                  "leave the vDSO as it is: programs that read the kernel's clocks past the C "
                  "library's symbols, and the C library's own reads, see the host's time");
+  std::string cycle_counter = "virtual";
+  exec->add_option(
+          "--rdtsc", cycle_counter,
+          "what the program reads of the processor's cycle counter; virtual: in step with the "
+          "virtual time (default); host: the host's")
+      ->check(CLI::IsMember({"virtual", "host"}));
   std::string uptime;
   exec->add_option("--uptime", uptime,
                    "TIME: CLOCK_MONOTONIC when the program starts (default: 1000s)");
@@ -419,12 +425,14 @@ int main(int argc, char** argv) {
     });
   }
   return tcs::RunGuarded([&] {
-    return exec->parsed()
-               ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost,
-                                   dds == "sockets" ? tcs::DdsTransport::kSockets
-                                                    : tcs::DdsTransport::kEndpoints,
-                                   uptime, date, outside, outside_takes},
-                                  options)
-               : tcs::FlushStdout(tcs::RunCommand(arguments, options));
+    return exec->parsed() ? tcs::ExecCommand({command, speed, cores, patch_vdso,
+                                              cycle_counter == "host" ? tcs::CycleCounter::kHost
+                                                                      : tcs::CycleCounter::kVirtual,
+                                              call_cost, allocation_cost,
+                                              dds == "sockets" ? tcs::DdsTransport::kSockets
+                                                               : tcs::DdsTransport::kEndpoints,
+                                              uptime, date, outside, outside_takes},
+                                             options)
+                          : tcs::FlushStdout(tcs::RunCommand(arguments, options));
   });
 }

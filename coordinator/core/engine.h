@@ -110,6 +110,7 @@ class Engine {
   [[nodiscard]] std::string PrepareMemory();
   [[nodiscard]] std::string PrepareSignals();
   [[nodiscard]] std::string PrepareHostCpu();
+  std::uint64_t CounterRate() const;
   std::optional<std::uint64_t> TurnsSeed() const;
   void MakeRobots();
   void TellOfWaits();

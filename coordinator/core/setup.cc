@@ -12,6 +12,7 @@
 #include <unistd.h>
 #include <x86gprintrin.h>
 
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -186,6 +187,7 @@ std::string Engine::PrepareMemory() {
   run_.header->realtime_offset_ns =
       run_.options.date_ns.value_or(run_.IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME));
   run_.header->coordinator_pid = getpid();
+  run_.header->counter_ticks_per_ns_q32 = CounterRate();
   run_.header->gates_only = run_.gates_only ? 1 : 0;
   run_.header->preempts = run_.SendsToGates() ? 1 : 0;
   run_.header->has_porters = run_.has_porters ? 1 : 0;
@@ -204,6 +206,13 @@ std::string Engine::PrepareSignals() {
 
   reactor_.Add(signal_fd_.get(), EPOLLIN, {Tag::kSignal});
   return {};
+}
+
+// Under set costs 1 GHz, the same on each host. Else the host's to the megahertz, for programs that
+// ask the processor or /proc/cpuinfo for it.
+std::uint64_t Engine::CounterRate() const {
+  const double mhz = run_.IsFixed() ? 1000 : std::round(clock_.rate().ticks_per_ns * 1000);
+  return static_cast<std::uint64_t>(mhz * 4294967296 / 1000);
 }
 
 // Of the next robot.

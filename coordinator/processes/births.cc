@@ -75,6 +75,7 @@ Task& Births::AddClient(pid_t pid, Robot& robot, const ClientSpec& client, Virtu
   process.call_cost = client.fixed_call_cost;
   process.allocation_cost = client.fixed_allocation_cost;
   process.patch_vdso = client.patch_vdso;
+  process.leads_counter = client.cycle_counter == CycleCounter::kVirtual;
   process.dds_endpoints = client.dds == DdsTransport::kEndpoints;
   Task& task = AddTask(process, pid, at);
   task.row = records_.AddRow(robot.name, client.name);
@@ -90,6 +91,7 @@ Task& Births::AddChild(pid_t pid, pid_t parent, const Process& maker, VirtualTim
   process.call_cost = maker.call_cost;
   process.allocation_cost = maker.allocation_cost;
   process.patch_vdso = maker.patch_vdso;
+  process.leads_counter = maker.leads_counter;
   // That of the gateway speaks to programs by sockets.
   process.dds_endpoints = maker.dds_endpoints && !maker.robot->is_ours;
   process.clock = maker.clock.Fork();

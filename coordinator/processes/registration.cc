@@ -232,6 +232,7 @@ void Registration::PlaceAtGate(Task& task, VirtualTime at, bool is_first) {
   // What it draws by trapped calls is a sequence of its own, which begins with the program, too.
   if (is_first && task.tid == task.process->pid) task.process->draws.Seed(~slot.seed);
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
+  slot.leads_counter = task.process->leads_counter ? 1 : 0;
   slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
   slot.signals.store(0);
   slot.open_calls.store(0);

@@ -59,6 +59,14 @@ DdsTransport LoadDdsTransport(const YamlValue& value) {
              Suggest(text, {"endpoints", "sockets"}, "ways of DDS"));
 }
 
+CycleCounter LoadCycleCounter(const YamlValue& value) {
+  const std::string text = value.AsText();
+  if (text == "virtual") return CycleCounter::kVirtual;
+  if (text == "host") return CycleCounter::kHost;
+  value.Fail("is the unknown '" + text + "'; " +
+             Suggest(text, {"virtual", "host"}, "cycle counters"));
+}
+
 SchedulerPolicy LoadScheduler(const YamlValue& value) {
   const std::string text = value.AsText();
   if (text == "fixed_priority") return SchedulerPolicy::kFixedPriority;
@@ -117,7 +125,7 @@ ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
   map.AllowOnly({"command", "class", "priority", "deadline", "body", "environment",
-                 "fixed_call_cost", "fixed_allocation_cost", "patch_vdso", "dds",
+                 "fixed_call_cost", "fixed_allocation_cost", "patch_vdso", "rdtsc", "dds",
                  "working_directory", "start", "after", "stop_signal", "stop_grace", "outside"});
   ClientSpec client;
   client.name = robot + "/" + entry.key;
@@ -139,6 +147,7 @@ ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
     client.fixed_allocation_cost = v->AsDuration();
   }
   if (const YamlValue* v = map.Find("patch_vdso")) client.patch_vdso = v->AsBoolean();
+  if (const YamlValue* v = map.Find("rdtsc")) client.cycle_counter = LoadCycleCounter(*v);
   if (const YamlValue* v = map.Find("dds")) client.dds = LoadDdsTransport(*v);
   if (const YamlValue* v = map.Find("outside")) client.outside = LoadOutside(*v, variables);
   LoadLife(map, variables, &client);

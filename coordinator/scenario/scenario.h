@@ -35,6 +35,12 @@ enum class ClientClass {
 };
 
 // How a client's DDS samples travel.
+// What programs read by rdtsc and rdtscp.
+enum class CycleCounter {
+  kVirtual,  // in step with the virtual time
+  kHost      // the processor's own
+};
+
 enum class DdsTransport {
   kEndpoints,  // in shared memory, from writer to reader, past the network; Cyclone's
   kSockets,    // as DDS sends them, by sockets; any vendor's
@@ -71,6 +77,7 @@ struct ClientSpec {
   // The same for one memory allocation; 0: nothing; none: as shm/set_costs.h has it.
   std::optional<VirtualDuration> fixed_allocation_cost;
   bool patch_vdso = true;  // reading the clock past the C library's symbols is virtual, too
+  CycleCounter cycle_counter = CycleCounter::kVirtual;
   DdsTransport dds = DdsTransport::kEndpoints;
   // It is started then, and not before the client named `after` has ended, unless that is empty.
   VirtualDuration start{};

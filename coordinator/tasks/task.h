@@ -188,7 +188,7 @@ struct Process {
   VirtualDuration call_cost;
   std::optional<VirtualDuration> allocation_cost;
   bool is_bare = false;  // its program runs without the shim (bare_programs.h)
-  bool patch_vdso = false, dds_endpoints = false;
+  bool patch_vdso = false, leads_counter = false, dds_endpoints = false;
   shm::Draws draws;  // by trapped calls, where they repeat
   ProgramClock clock;
   ProcessTimers timers;
@@ -208,6 +208,7 @@ struct Process {
   std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
   bool pays_for_silence = false;  // a client: its threads compute for long without calls
   bool stays_home = false;        // its threads do not compute ahead (computing_ahead.h)
+  bool counter_warned = false;    // a client: of what it, or a descendant, reads by rdtsc
   bool dds_warned = false;        // a client: of what it, or a descendant, sends
   bool has_erred = false;         // a client: it, or a descendant, was expelled
   Task* deliverer = nullptr;      // its thread that takes what is for it

@@ -12,6 +12,7 @@
 #include <sys/sem.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <x86intrin.h>
 
 #include "tests/conformance/conformance.h"
 
@@ -128,6 +129,10 @@ constexpr Wait kWaits[] = {
     {"clock_gettime",
      [] {
        for (int i = 0; i < 100; ++i) Now();
+     }},
+    {"rdtsc",
+     [] {
+       for (int i = 0; i < 20'000; ++i) __rdtsc();
      }},
 };
 

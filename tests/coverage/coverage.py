@@ -14,6 +14,7 @@ HOW = {
     "shim": "virtual",
     "inside": "virtual",
     "vdso": "virtual",
+    "code": "virtual",
     "trapped": "virtual",
     "kernel": "**the kernel's**",
 }

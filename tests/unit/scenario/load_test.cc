@@ -87,6 +87,8 @@ TEST_F(LoadTest, TheRobotsAreAsWritten) {
   EXPECT_EQ(planner.fixed_allocation_cost, VirtualDuration::Nanoseconds(50));
   EXPECT_FALSE(planner.patch_vdso);
   EXPECT_TRUE(controller.patch_vdso);
+  EXPECT_EQ(planner.cycle_counter, CycleCounter::kHost);
+  EXPECT_EQ(controller.cycle_counter, CycleCounter::kVirtual);
 }
 
 TEST_F(LoadTest, ARobotMayBeIdeal) {

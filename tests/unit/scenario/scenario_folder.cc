@@ -40,7 +40,7 @@ robots:
         body: predator
         environment: {MODE: fast}
         fixed_call_cost: 3us
-      planner: {command: [sh, -c, "true"], patch_vdso: false, fixed_allocation_cost: 50ns}
+      planner: {command: [sh, -c, "true"], patch_vdso: false, rdtsc: host, fixed_allocation_cost: 50ns}
 channels:
   eyes:
     type: udp_json

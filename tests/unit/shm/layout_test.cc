@@ -12,7 +12,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 24u);
+  EXPECT_EQ(kVersion, 25u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 5376u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -23,6 +23,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(RunHeader, names_by_robot), 80u);
   EXPECT_EQ(offsetof(RunHeader, notes_activity), 84u);
   EXPECT_EQ(offsetof(RunHeader, turns_beside), 88u);
+  EXPECT_EQ(offsetof(RunHeader, counter_ticks_per_ns_q32), 96u);
   EXPECT_EQ(offsetof(ClockPage, horizon_ns), 32u);
   EXPECT_EQ(offsetof(ClockPage, waited_adjust), 72u);
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);
@@ -43,6 +44,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, datagrams), 1216u);
   EXPECT_EQ(offsetof(ThreadSlot, announces), 3272u);
   EXPECT_EQ(offsetof(ThreadSlot, descriptors_changed), 3276u);
+  EXPECT_EQ(offsetof(ThreadSlot, leads_counter), 3280u);
   EXPECT_EQ(offsetof(ThreadSlot, postbox), 3328u);
 }
 

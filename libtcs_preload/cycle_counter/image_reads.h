@@ -1,0 +1,14 @@
+// The reads of the cycle counter in one image: found, and replaced.
+#pragma once
+
+#include "libtcs_preload/cycle_counter/stand_ins.h"
+#include "libtcs_preload/cycle_counter/tell_of_reads.h"
+#include "shm/machine_code/image.h"
+
+namespace tcs::preload {
+
+// No thread executes code of the image meanwhile, but for this one, elsewhere. Its segments must
+// not change. What stands in for its reads.
+StandInMemory* ReplaceReads(const shm::Image& image, LeftReads* left);
+
+}  // namespace tcs::preload
