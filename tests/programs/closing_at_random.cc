@@ -35,7 +35,8 @@ namespace {
 
 constexpr int kLanes = 4;
 constexpr long kPoison = 4096;
-constexpr int kPollMs = 50;  // longer than any closer takes
+// For a poll that nothing ends, or nobody knows what: under tcs longer than a closer takes.
+constexpr int kPollMs = 50;
 
 bool g_under_tcs = false;
 std::atomic<long> g_left{0}, g_rounds{0};
@@ -101,7 +102,6 @@ class Decoys {
 
 struct Lane {
   std::uint32_t number = 0;
-  std::atomic<pid_t> reader{0};
   int stat = -1;  // what the kernel says of it
   sem_t begins, ends;
   // Of this round:
@@ -111,8 +111,9 @@ struct Lane {
   Fate fate{};
   int reads = -1, writes = -1;
   bool comes_to_end = false;
-  bool has_full_decoy = false;  // of a file that is replaced
-  std::vector<int> copies;      // of decoys
+  int decoy = -1;  // that it is replaced by
+  bool has_full_decoy = false;
+  std::vector<int> copies;  // of decoys
 
   template <class... Values>
   [[noreturn]] void Fails(const char* format, Values... values) const {
@@ -170,7 +171,7 @@ bool Make(File file, int (&ends)[2]) {
   return false;
 }
 
-void Open(Lane& lane, std::mt19937& random) {
+void Open(Lane& lane, std::mt19937& random, const Decoys& decoys) {
   // What goes over IP takes longer, and is rarer.
   constexpr File kFiles[] = {File::kPipe,     File::kPipe,     File::kEvent,    File::kEvent,
                              File::kStream,   File::kStream,   File::kDatagram, File::kDatagram,
@@ -185,9 +186,17 @@ void Open(Lane& lane, std::mt19937& random) {
   // A read of an eventfd in pieces gets only the first.
   if (lane.file == File::kEvent && lane.call == Call::kReadv) lane.call = Call::kRead;
   lane.comes_to_end = HasEnd(lane.file) && random() % 4 == 0;
+  lane.decoy = decoys.Any(random);
+  lane.has_full_decoy = decoys.IsFull(lane.decoy);
 }
 
-long Read(Call call, int fd, Message* message) {
+// Milliseconds, -1: no end; a poll that is woken, and finds what it is to find, needs none.
+int PollTime(const Lane& lane) {
+  const bool finds_decoy = lane.fate == Fate::kReplaced && lane.has_full_decoy;
+  return lane.fate == Fate::kStays || finds_decoy ? -1 : kPollMs;
+}
+
+long Read(Call call, int fd, Message* message, int poll_time = 0) {
   iovec halves[] = {{&message->round, 4}, {&message->lane_and_check, 4}};
   mmsghdr header{};
   header.msg_hdr.msg_iov = halves;
@@ -202,7 +211,7 @@ long Read(Call call, int fd, Message* message) {
     case Call::kRawRead:
       return syscall(SYS_read, fd, message, sizeof *message);
     case Call::kPoll:
-      return poll(&entry, 1, kPollMs) == 1 ? entry.revents : 0;
+      return poll(&entry, 1, poll_time) == 1 ? entry.revents : 0;
     case Call::kRecv:
       return recv(fd, message, sizeof *message, 0);
     case Call::kRecvmsg:
@@ -260,21 +269,19 @@ void CheckGone(const Lane& lane) {
   }
 }
 
-void BeReader(Lane& lane, unsigned seed) {
+void BeReader(Lane& lane, unsigned seed, const Decoys& decoys) {
   std::mt19937 random(seed);
   char path[64];
   snprintf(path, sizeof path, "/proc/self/task/%d/stat", static_cast<int>(gettid()));
   lane.stat = open(path, O_RDONLY | O_CLOEXEC);
   while (g_left > 0) {
     ++lane.round;
-    Open(lane, random);
+    Open(lane, random, decoys);
     Message message{};
-    lane.reader = gettid();
     sem_post(&lane.begins);
-    long got = Read(lane.call, lane.reads, &message);
+    long got = Read(lane.call, lane.reads, &message, PollTime(lane));
     Count(1);
     int error = errno;
-    lane.reader = 0;
     sem_wait(&lane.ends);
     if (lane.call == Call::kPoll) {
       CheckPoll(lane, got);
@@ -313,7 +320,8 @@ void AwaitReader(const Lane& lane) {
     usleep(5000);
     return;
   }
-  while (lane.reader == 0 || !Sleeps(lane)) usleep(10);
+  // Once a poll's time is over the reader waits until this lane's round ends.
+  while (!Sleeps(lane)) usleep(10);
 }
 
 void BeCloser(Lane& lane, unsigned seed, const Decoys& decoys) {
@@ -325,9 +333,7 @@ void BeCloser(Lane& lane, unsigned seed, const Decoys& decoys) {
     if (lane.fate == Fate::kClosed || lane.fate == Fate::kUsedAgain) Close(lane.reads);
     if (lane.fate == Fate::kReplaced) {
       Count(1);
-      const int decoy = decoys.Any(random);
-      lane.has_full_decoy = decoys.IsFull(decoy);
-      if (dup2(decoy, lane.reads) != lane.reads) Fail("dup2: %s", strerror(errno));
+      if (dup2(lane.decoy, lane.reads) != lane.reads) Fail("dup2: %s", strerror(errno));
     }
     for (unsigned more = lane.fate == Fate::kUsedAgain ? 1 + random() % 3 : 0; more > 0; --more) {
       Count(1);
@@ -361,7 +367,7 @@ int main(int argc, char** argv) {
     lanes[i].number = i + 1;
     sem_init(&lanes[i].begins, 0, 0);
     sem_init(&lanes[i].ends, 0, 0);
-    threads.emplace_back(BeReader, std::ref(lanes[i]), seed + 2 * i);
+    threads.emplace_back(BeReader, std::ref(lanes[i]), seed + 2 * i, std::cref(decoys));
     threads.emplace_back(BeCloser, std::ref(lanes[i]), seed + 2 * i + 1, std::cref(decoys));
   }
   for (std::thread& thread : threads) thread.join();

@@ -17,7 +17,7 @@ without_rights() {  # ACCOUNTING CORES OPERATIONS OPTION...
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-timeout 900 "$program" "$operations" 1 || fail "natively"
+timeout 900 "$program" "$operations" 1 || fail "natively: status $?"
 for cores in 1 4; do
   with_rights measured $cores 2
   first=$(with_rights fixed $cores 3)
