@@ -52,7 +52,8 @@ class MoreDescriptors {
   // The least number that is out of the way of the program's own.
   long Beyond() const {
     const auto limit = static_cast<long>(before_.rlim_cur);
-    if (has_more_ && before_.rlim_cur <= kMostBeyond) return limit;
+    // A program that wants a number that nobody has takes the limit itself.
+    if (has_more_ && before_.rlim_cur <= kMostBeyond) return limit + 2;
     return limit - static_cast<long>(kMore) < kWantedFd ? limit - static_cast<long>(kMore)
                                                         : kWantedFd;
   }

@@ -103,12 +103,14 @@ TCS_EXPORT void closefrom(int first) noexcept {
 }
 
 TCS_EXPORT int dup(int fd) noexcept {
+  if (IsOwnDescriptor(fd)) return Fail(EBADF);
   const long copy = RawSyscall(SYS_dup, fd);
   if (copy >= 0) CopyTimerFd(fd, static_cast<int>(copy));
   return static_cast<int>(ToErrno(copy));
 }
 
 TCS_EXPORT int dup3(int from, int to, int flags) noexcept {
+  if (IsOwnDescriptor(from)) return Fail(EBADF);
   if (IsOwnDescriptor(to)) return Fail(IsBeyondLimit(to) ? EBADF : EBUSY);
   if (from != to && RawSyscall(SYS_fcntl, from, F_GETFD) >= 0) LingerBeforeClosing(to);
   BeginClosing(to);

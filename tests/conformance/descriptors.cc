@@ -90,7 +90,10 @@ constexpr int kFew = 64;
     EXPECT(!IsOpen(fd), "%d is open", fd);
     EXPECT(dup2(2, fd) == fd, "dup2 to %d: %s", fd, strerror(errno));
   }
-  EXPECT(dup2(2, kFew) == -1 && errno == EBADF, "dup2 beyond the limit: %s", strerror(errno));
+  for (int fd = kFew; fd < kFew + 9; ++fd) {
+    EXPECT(dup2(2, fd) == -1 && errno == EBADF, "dup2 beyond the limit: %s", strerror(errno));
+    EXPECT(dup2(fd, 3) == -1 && errno == EBADF, "dup2 from %d", fd);
+  }
   EXPECT(dup(2) == -1 && errno == EMFILE, "dup: %s", strerror(errno));
   const pid_t child = fork();
   if (child == 0) _exit(7);

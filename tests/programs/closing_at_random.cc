@@ -264,7 +264,8 @@ void CheckGone(const Lane& lane) {
     return;
   }
   const ssize_t n = write(lane.writes, "x", 1);
-  if (n != -1 || (errno != EPIPE && errno != ECONNREFUSED && errno != ECONNRESET)) {
+  if (n != -1 ||
+      (errno != EPIPE && errno != ECONNREFUSED && errno != ECONNRESET && errno != ENOTCONN)) {
     lane.Fails("still open: %zd (%s)", n, strerror(errno));
   }
 }
@@ -346,7 +347,11 @@ void BeCloser(Lane& lane, unsigned seed, const Decoys& decoys) {
     } else {
       const Message message = Message::Of(lane.number, lane.round);
       const ssize_t n = write(lane.writes, &message, sizeof message);
-      if (n != sizeof message) Fail("write: %zd (%s)", n, strerror(errno));
+      // On a busy host a poll's time may be over before its file is closed.
+      const bool may_be_gone = lane.call == Call::kPoll && lane.fate != Fate::kStays;
+      if (n != sizeof message && !(n == -1 && may_be_gone && !g_under_tcs)) {
+        lane.Fails("write: %zd (%s)", n, strerror(errno));
+      }
     }
     sem_post(&lane.ends);
   }
