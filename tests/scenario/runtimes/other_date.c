@@ -1,4 +1,5 @@
-/* Under libfaketime, which shows another date: four threads sleep, and the program waits by poll and select: 1.5 s. */
+/* Under libfaketime, which shows another date: four threads sleep, and the program waits by poll
+ * and select: 1.5 s. */
 #include <poll.h>
 #include <pthread.h>
 #include <stdio.h>

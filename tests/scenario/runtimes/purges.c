@@ -1,4 +1,5 @@
-/* Four threads that allocate and free for a second; then memory is left to be purged for a minute: 61 s. */
+/* Four threads that allocate and free for a second; then memory is left to be purged for a minute:
+ * 61 s. */
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* Eight threads of the least stack that there is wait in turn by select, poll, nanosleep and a child: 8 s. */
+/* Eight threads of the least stack that there is wait in turn by select, poll, nanosleep and a
+ * child: 8 s. */
 #include <limits.h>
 #include <poll.h>
 #include <pthread.h>

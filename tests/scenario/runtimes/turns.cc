@@ -1,4 +1,5 @@
-// Four threads take turns 100 times each, every one a millisecond; then a wait that nobody ends: 2.4 s.
+// Four threads take turns 100 times each, every one a millisecond; then a wait that nobody
+// ends: 2.4 s.
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
