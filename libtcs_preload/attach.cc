@@ -24,7 +24,11 @@ namespace {
 
 shm::ThreadSlot* g_slots = nullptr;
 
-constexpr int kWantedFd = 960;  // out of the way of programs that count descriptors from 0
+// Where what is kept is out of the way of programs that count descriptors from 0.
+constexpr long kWantedFd = 960;
+// Up to such a limit of open files it stays beyond the limit, where the program has no number. The
+// kernel keeps a table up to the highest number, and copies it for each child.
+constexpr rlim64_t kMostBeyond = 4096;
 
 // A program may have used up all its descriptors, and make a thread or a process then, for which it
 // needs none. While this lives there are some more, where the process may raise its limit: those
@@ -45,7 +49,14 @@ class MoreDescriptors {
   MoreDescriptors(const MoreDescriptors&) = delete;
   MoreDescriptors& operator=(const MoreDescriptors&) = delete;
 
-  rlim64_t before() const { return before_.rlim_cur; }
+  // The least number that is out of the way of the program's own.
+  long Beyond() const {
+    const auto limit = static_cast<long>(before_.rlim_cur);
+    // A program that wants a number that nobody has takes the limit itself.
+    if (has_more_ && before_.rlim_cur <= kMostBeyond) return limit + 2;
+    return limit - static_cast<long>(kMore) < kWantedFd ? limit - static_cast<long>(kMore)
+                                                        : kWantedFd;
+  }
 
  private:
   static constexpr rlim64_t kMore = 8;
@@ -148,17 +159,17 @@ void MapSlots(int fd) {
   g_slots = reinterpret_cast<shm::ThreadSlot*>(at);
 }
 
-// Out of the way, as `kept`, which is the parent's before. `limit`: of descriptors.
-void Keep(int fd, int& kept, rlim64_t limit) {
+// Out of the way, as `kept`, which is the parent's before.
+void Keep(int fd, int& kept, const MoreDescriptors& more) {
   if (kept >= 0) {
     if (RawSyscall(SYS_dup3, fd, kept, O_CLOEXEC) == kept) {
       RawSyscall(SYS_close, fd);
       return;
     }
+    // The number is beyond a limit that the parent has lowered.
+    RawSyscall(SYS_close, kept);
   }
-  const long room = static_cast<long>(limit) - 8;
-  const long moved =
-      RawSyscall(SYS_fcntl, fd, F_DUPFD_CLOEXEC, room < kWantedFd ? room : kWantedFd);
+  const long moved = RawSyscall(SYS_fcntl, fd, F_DUPFD_CLOEXEC, more.Beyond());
   if (moved >= 0) {
     RawSyscall(SYS_close, fd);
     fd = static_cast<int>(moved);
@@ -181,8 +192,8 @@ void Attach(GuestThread& thread) {
   if (is_first) {
     if (g_header == nullptr) MapRun(received.fds[0]);
     MapSlots(received.fds[1]);
-    Keep(received.fds[2], g_notify_fd, more.before());
-    if (received.fds[3] >= 0) Keep(received.fds[3], g_porter_fd, more.before());
+    Keep(received.fds[2], g_notify_fd, more);
+    if (received.fds[3] >= 0) Keep(received.fds[3], g_porter_fd, more);
     RawSyscall(SYS_close, received.fds[0]);
     RawSyscall(SYS_close, received.fds[1]);
   }

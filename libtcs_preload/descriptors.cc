@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <linux/close_range.h>
 #include <stdarg.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "libtcs_preload/errno_result.h"
@@ -26,6 +27,13 @@ void NoteChange() {
   if (t == nullptr) return;
   std::atomic<std::uint32_t>& changed = t->slot->descriptors_changed;
   changed.store(changed.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+}
+
+// The kernel refuses a number beyond the limit of open files before it looks at what has it.
+bool IsBeyondLimit(int fd) {
+  rlimit64 limit{};
+  RawSyscall(SYS_prlimit64, 0, RLIMIT_NOFILE, 0, Arg(&limit));
+  return static_cast<rlim64_t>(fd) >= limit.rlim_cur;
 }
 
 // What was open for others to see is about to be closed.
@@ -97,13 +105,15 @@ TCS_EXPORT void closefrom(int first) noexcept {
 }
 
 TCS_EXPORT int dup(int fd) noexcept {
+  if (IsOwnDescriptor(fd)) return Fail(EBADF);
   const long copy = RawSyscall(SYS_dup, fd);
   if (copy >= 0) CopyTimerFd(fd, static_cast<int>(copy));
   return static_cast<int>(ToErrno(copy));
 }
 
 TCS_EXPORT int dup3(int from, int to, int flags) noexcept {
-  if (IsOwnDescriptor(to)) return Fail(EBUSY);
+  if (IsOwnDescriptor(from)) return Fail(EBADF);
+  if (IsOwnDescriptor(to)) return Fail(IsBeyondLimit(to) ? EBADF : EBUSY);
   if (from != to && RawSyscall(SYS_fcntl, from, F_GETFD) >= 0) LingerBeforeClosing(to);
   BeginClosing(to);
   const long copy = RawSyscall(SYS_dup3, from, to, flags);

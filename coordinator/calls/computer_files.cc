@@ -120,8 +120,10 @@ std::vector<std::int64_t> BusyOf(const Robot& robot) {
   return busy_ns;
 }
 
+// Not that its thread sleeps at its gate: one that has yet to begin has not come to any wait.
 bool IsRunning(const Task& task, const Task& reader) {
-  return &task == &reader || task.state == TaskState::kReady || task.state == TaskState::kHolding;
+  return &task == &reader || task.state == TaskState::kReady || task.state == TaskState::kHolding ||
+         task.state == TaskState::kStarting;
 }
 
 std::int64_t BootTimeNs() {

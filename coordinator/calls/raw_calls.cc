@@ -54,7 +54,7 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
                              : parts_.times.ReadClock(task, call);
       break;
     case SYS_getrusage:
-      task.trap_result = RawUsage::GetUsage(task, call);
+      task.trap_result = parts_.usage.GetUsage(task, call);
       break;
     case SYS_times:
       task.trap_result = parts_.usage.Times(task, call);

@@ -8,7 +8,6 @@
 
 #include <optional>
 
-#include "coordinator/os/kernel_usage.h"
 #include "coordinator/processes/usage_book.h"
 #include "coordinator/tasks/client_values.h"
 #include "shm/clock_ids.h"
@@ -30,20 +29,6 @@ std::optional<std::int64_t> ChargedNs(const RunState& run, const Task& task,
   return UsageBook::ChargedTo(*of).ns();
 }
 
-void Fill(const KernelUsage& counted, std::int64_t charged_ns, rusage& usage) {
-  const std::int64_t ticks = counted.user_ticks + counted.system_ticks;
-  const double user_part =
-      ticks == 0 ? 1.0 : static_cast<double>(counted.user_ticks) / static_cast<double>(ticks);
-  const auto user_ns = static_cast<std::int64_t>(static_cast<double>(charged_ns) * user_part);
-  usage.ru_utime = shm::ToTimeval(user_ns);
-  usage.ru_stime = shm::ToTimeval(charged_ns - user_ns);
-  usage.ru_maxrss = counted.peak_kib;
-  usage.ru_minflt = counted.minor_faults;
-  usage.ru_majflt = counted.major_faults;
-  usage.ru_nvcsw = counted.waits;
-  usage.ru_nivcsw = counted.preemptions;
-}
-
 }  // namespace
 
 std::int64_t RawUsage::ReadClock(Task& task, const TrappedCall& call) const {
@@ -56,7 +41,22 @@ std::int64_t RawUsage::ReadClock(Task& task, const TrappedCall& call) const {
   return Write(task, call.args[1], ToTimespec(*charged)) ? 0 : -EFAULT;
 }
 
-std::int64_t RawUsage::GetUsage(const Task& task, const TrappedCall& call) {
+void RawUsage::Fill(const KernelUsage& counted, std::int64_t charged_ns, rusage& usage) const {
+  const std::int64_t ticks = counted.user_ticks + counted.system_ticks;
+  const double user_part = run_.IsFixed() || ticks == 0 ? 1.0
+                                                        : static_cast<double>(counted.user_ticks) /
+                                                              static_cast<double>(ticks);
+  const auto user_ns = static_cast<std::int64_t>(static_cast<double>(charged_ns) * user_part);
+  usage.ru_utime = shm::ToTimeval(user_ns);
+  usage.ru_stime = shm::ToTimeval(charged_ns - user_ns);
+  usage.ru_maxrss = counted.peak_kib;
+  usage.ru_minflt = counted.minor_faults;
+  usage.ru_majflt = counted.major_faults;
+  usage.ru_nvcsw = counted.waits;
+  usage.ru_nivcsw = counted.preemptions;
+}
+
+std::int64_t RawUsage::GetUsage(const Task& task, const TrappedCall& call) const {
   const pid_t pid = task.process->pid;
   rusage usage{};
   switch (static_cast<int>(call.args[0])) {

@@ -4,8 +4,11 @@
 // For the coordinator's thread only.
 #pragma once
 
+#include <sys/resource.h>
+
 #include <cstdint>
 
+#include "coordinator/os/kernel_usage.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/tasks/run_state.h"
 
@@ -17,13 +20,15 @@ class RawUsage {
 
   // clock_gettime of a clock of processor time, the caller's or another's.
   std::int64_t ReadClock(Task& task, const TrappedCall& call) const;
-  // getrusage. What was charged is divided into user and system time as the kernel divides it.
-  static std::int64_t GetUsage(const Task& task, const TrappedCall& call);
+  // getrusage. What was charged is divided into user and system time as the kernel divides it; set
+  // costs are user time.
+  std::int64_t GetUsage(const Task& task, const TrappedCall& call) const;
   std::int64_t Times(const Task& task, const TrappedCall& call) const;
   // sysinfo: the host's, with the robot's uptime.
   std::int64_t SystemInfo(const Task& task, const TrappedCall& call) const;
 
  private:
+  void Fill(const KernelUsage& counted, std::int64_t charged_ns, rusage& usage) const;
   std::int64_t UptimeNs(const Task& task) const;
 
   RunState& run_;

@@ -14,6 +14,7 @@
 #include "coordinator/host/gate_executor.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/open_file_limit.h"
 #include "coordinator/os/own_computer.h"
 #include "shm/check.h"
 
@@ -448,6 +449,7 @@ RunReport Engine::Run() {
 }
 
 RunReport RunScenario(const Scenario& scenario, const RunOptions& options) {
+  RaiseOpenFileLimit();
   if (scenario.network) {
     if (const std::optional<NoComputer> why_not = GetReadyForComputers()) {
       RunReport refused;

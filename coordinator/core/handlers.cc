@@ -10,6 +10,7 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/open_file_limit.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -43,8 +44,9 @@ Reactor::Found Engine::OnPipe(Subject process, std::uint32_t, Moment moment) {
 }
 
 Reactor::Found Engine::OnListener(Subject listener, std::uint32_t, Moment) {
-  sockets_.Accept(listener.index);
-  return {};
+  if (sockets_.Accept(listener.index)) return {};
+  if (run_.report.error.empty()) run_.report.error = WhyNoFurtherFile();
+  return kConcernsAll;
 }
 
 Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment moment) {

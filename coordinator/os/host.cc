@@ -24,6 +24,7 @@
 #include <optional>
 #include <system_error>
 
+#include "coordinator/os/open_file_limit.h"
 #include "coordinator/os/passed_fd.h"
 #include "coordinator/os/say.h"
 #include "coordinator/os/unique_fd.h"
@@ -408,6 +409,7 @@ Spawned Spawn(const SpawnRequest& request) {
   sockets->ours.Reset();
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
+  RestoreOpenFileLimit();
   if (request.computer != nullptr && !EnterComputer(*request.computer)) {
     Say(std::string(argv[0]) + " cannot be put into its robot's network: " + strerror(errno));
     _exit(127);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coordinator/os/host.h"
+#include "coordinator/os/open_file_limit.h"
 #include "coordinator/processes/attach_exchange.h"
 #include "coordinator/tasks/cpu_clock.h"
 
@@ -110,8 +111,12 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
     Refuse(connection, "there is no descriptor left there for its porter");
     return true;
   }
-  if (process.link == nullptr ||
-      (task.slot < 0 && (task.slot = process.link->TakeSlot(task)) < 0)) {
+  if (process.link == nullptr) {
+    if (run_.report.error.empty()) run_.report.error = WhyNoFurtherFile();
+    Refuse(connection, "tcsim can open no files for it");
+    return true;
+  }
+  if (task.slot < 0 && (task.slot = process.link->TakeSlot(task)) < 0) {
     Refuse(connection, "there is no room for more threads");
     return true;
   }

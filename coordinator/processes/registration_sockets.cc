@@ -50,11 +50,16 @@ std::string RegistrationSockets::Open(const OwnComputer* computer) {
   return name;
 }
 
-void RegistrationSockets::Accept(std::uint32_t number) {
+bool RegistrationSockets::Accept(std::uint32_t number) {
   const Socket& socket = sockets_[number];
   UniqueFd fd(accept4(socket.fd.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-  if (!fd) return;
+  if (!fd) {
+    if (errno != EMFILE && errno != ENFILE) return true;
+    reactor_.Remove(socket.fd.get());
+    return false;
+  }
   Add({std::move(fd), socket.client});
+  return true;
 }
 
 bool RegistrationSockets::ConnectBy(const TrappedCall& call) {

@@ -46,7 +46,8 @@ class RegistrationSockets {
   // there.
   void AssignTo(Process& client) { sockets_.back().client = &client; }
 
-  void Accept(std::uint32_t number);
+  // False: there is a connection, but no descriptor for it, and there will be no other one.
+  [[nodiscard]] bool Accept(std::uint32_t number);
   // The trapped call is to connect to one of the sockets, from a network namespace where there is
   // none (a sandbox's). It is carried out here, and answered; false: it is another call.
   bool ConnectBy(const TrappedCall& call);

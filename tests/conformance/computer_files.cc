@@ -7,10 +7,13 @@
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
+#include <atomic>
+#include <new>
 #include <string>
 
 #include "tests/conformance/conformance.h"
@@ -288,6 +291,34 @@ void Processes() {
          (long long)StartIn(first), (long long)StartIn(own));
 }
 
+// A process that is seen to sleep has come to its wait, and a signal ends that.
+void SleepersWait() {
+  void* const shared =
+      mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  EXPECT(shared != MAP_FAILED, "mmap: %s", strerror(errno));
+  auto* const has_begun = new (shared) std::atomic<int>(0);
+  for (int i = 0; i < 10; ++i) {
+    *has_begun = 0;
+    const pid_t child = fork();
+    if (child == 0) {
+      *has_begun = 1;
+      pause();
+      _exit(0);
+    }
+    const std::string path = "/proc/" + std::to_string(child) + (i % 2 == 0 ? "/stat" : "/status");
+    const auto state = [&] {
+      const std::string text = TextOf(path);
+      return i % 2 == 0 ? text[text.rfind(')') + 2] : Value(text, "State:")[0];
+    };
+    while (state() != 'S') usleep(50);
+    const bool has_come = *has_begun == 1;
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    EXPECT(has_come, "it sleeps before it has begun: %s", path.c_str());
+  }
+  munmap(shared, sizeof(int));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -298,6 +329,7 @@ int main(int argc, char** argv) {
   Uptime();
   Threads();
   Processes();
+  SleepersWait();
   Groups();
   ProcessorsAgree();
 }

@@ -81,9 +81,46 @@ void NoneLeft() {
   EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "status %x", status);
 }
 
+// A program with few descriptors may use the number of each one.
+constexpr char kEveryNumber[] = "every number";
+constexpr int kFew = 64;
+
+[[noreturn]] void UseEveryNumber() {
+  for (int fd = 3; fd < kFew; ++fd) {
+    EXPECT(!IsOpen(fd), "%d is open", fd);
+    EXPECT(dup2(2, fd) == fd, "dup2 to %d: %s", fd, strerror(errno));
+  }
+  for (int fd = kFew; fd < kFew + 9; ++fd) {
+    EXPECT(dup2(2, fd) == -1 && errno == EBADF, "dup2 beyond the limit: %s", strerror(errno));
+    EXPECT(dup2(fd, 3) == -1 && errno == EBADF, "dup2 from %d", fd);
+  }
+  EXPECT(dup(2) == -1 && errno == EMFILE, "dup: %s", strerror(errno));
+  const pid_t child = fork();
+  if (child == 0) _exit(7);
+  int status = 0;
+  EXPECT(waitpid(child, &status, 0) == child && WEXITSTATUS(status) == 7, "status %x", status);
+  for (int fd = 3; fd < kFew; ++fd) EXPECT(close(fd) == 0, "close %d: %s", fd, strerror(errno));
+  _exit(0);
+}
+
+void EveryNumber(char* mode) {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    rlimit limit;
+    getrlimit(RLIMIT_NOFILE, &limit);
+    const rlimit few{kFew, limit.rlim_max};
+    EXPECT(setrlimit(RLIMIT_NOFILE, &few) == 0, "setrlimit: %s", strerror(errno));
+    execl("/proc/self/exe", kEveryNumber, mode, nullptr);
+    Fail("exec: %s", strerror(errno));
+  }
+  int status = 0;
+  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "status %x", status);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (strcmp(argv[0], kEveryNumber) == 0) UseEveryNumber();
   Begin(argc, argv);
   TimerCopies();
   const int low = dup(2);
@@ -101,4 +138,5 @@ int main(int argc, char** argv) {
   EXPECT(close(500) == -1 && errno == EBADF, "close of nothing");
   ExpectSleeps("closing one by one");
   NoneLeft();
+  EveryNumber(argc > 1 ? argv[1] : nullptr);
 }

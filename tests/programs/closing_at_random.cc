@@ -2,18 +2,22 @@
 // others close the descriptor that one of them waits at, or give its number to another file; then
 // they write to the file, or close its other end. It goes on until so many descriptors have been
 // closed, copied and read. Whoever reads has to find what was written to its file, or its end, and
-// nothing of another one; and once it has, the file has to be gone.
+// nothing of another one; and once it has, the file has to be gone. Who polls is woken by its file,
+// and is told of what has the number by then.
 //
 // Numbers change hands only while their reader is known to wait: natively by what the kernel says
 // of the thread; under tcs (third argument) since 5 ms have passed, in which all can come to their
 // waits.
 #include <errno.h>
 #include <fcntl.h>
+#include <netinet/in.h>
+#include <poll.h>
 #include <semaphore.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/eventfd.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
@@ -24,12 +28,15 @@
 #include <cstdint>
 #include <random>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace {
 
 constexpr int kLanes = 4;
 constexpr long kPoison = 4096;
+// For a poll that nothing ends, or nobody knows what: under tcs longer than a closer takes.
+constexpr int kPollMs = 50;
 
 bool g_under_tcs = false;
 std::atomic<long> g_left{0}, g_rounds{0};
@@ -48,16 +55,20 @@ void Close(int fd) {
   if (close(fd) != 0) Fail("close %d: %s", fd, strerror(errno));
 }
 
-enum class File { kPipe, kStream, kDatagram, kSequence };
-enum class Call { kRead, kReadv, kRecv, kRecvmsg, kRawRead, kRawRecvfrom };
+enum class File { kPipe, kEvent, kStream, kDatagram, kSequence, kTcp, kUdp };
+// The first four are for all files, the others for sockets.
+enum class Call { kRead, kReadv, kRawRead, kPoll, kRecv, kRecvmsg, kRecvmmsg, kRawRecvfrom };
 enum class Fate { kStays, kClosed, kReplaced, kUsedAgain };
 
+// Eight bytes, as an eventfd counts: what is written to it is found in it.
 struct Message {
-  std::uint32_t lane, round, check;
-  bool IsOf(std::uint32_t of_lane, std::uint32_t of_round) const {
-    return lane == of_lane && round == of_round && check == ~round;
+  std::uint32_t round, lane_and_check;
+  static Message Of(std::uint32_t lane, std::uint32_t round) {
+    return {round, lane << 28 | (~round & 0xfffffff)};
   }
+  bool operator==(const Message&) const = default;
 };
+static_assert(sizeof(Message) == 8);
 
 // Files that get the numbers of others. Nobody reads or writes any.
 class Decoys {
@@ -75,6 +86,7 @@ class Decoys {
     }
   }
   int Any(std::mt19937& random) const { return pairs_[random() % 4][0]; }
+  bool IsFull(int decoy) const { return decoy == pairs_[1][0] || decoy == pairs_[2][0]; }
   void Check() const {
     for (int i = 0; i < 4; ++i) {
       const int wanted = i == 1 || i == 2 ? kPoison : 0;
@@ -90,94 +102,203 @@ class Decoys {
 
 struct Lane {
   std::uint32_t number = 0;
-  std::atomic<pid_t> reader{0};
   int stat = -1;  // what the kernel says of it
   sem_t begins, ends;
   // Of this round:
   std::uint32_t round = 0;
   File file{};
+  Call call{};
   Fate fate{};
   int reads = -1, writes = -1;
   bool comes_to_end = false;
+  int decoy = -1;  // that it is replaced by
+  bool has_full_decoy = false;
   std::vector<int> copies;  // of decoys
+
+  template <class... Values>
+  [[noreturn]] void Fails(const char* format, Values... values) const {
+    fprintf(stderr, "lane %u, round %u, call %d, file %d, fate %d, comes to its end %d: ", number,
+            round, static_cast<int>(call), static_cast<int>(file), static_cast<int>(fate),
+            comes_to_end);
+    Fail(format, values...);
+  }
 };
 
-void Open(Lane& lane, std::mt19937& random) {
-  lane.file = static_cast<File>(random() % 4);
+bool IsSocket(File file) { return file != File::kPipe && file != File::kEvent; }
+
+bool HasEnd(File file) {
+  return file == File::kPipe || file == File::kStream || file == File::kSequence ||
+         file == File::kTcp;
+}
+
+// One end of a connection over loopback, and the other.
+bool Connect(int type, int (&ends)[2]) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  auto* const raw = reinterpret_cast<sockaddr*>(&address);
+  ends[0] = socket(AF_INET, type, 0);
+  ends[1] = socket(AF_INET, type, 0);
+  if (ends[0] < 0 || ends[1] < 0) return false;
+  if (bind(ends[0], raw, size) != 0 || getsockname(ends[0], raw, &size) != 0) return false;
+  if (type == SOCK_STREAM && listen(ends[0], 1) != 0) return false;
+  if (connect(ends[1], raw, size) != 0) return false;
+  if (type != SOCK_STREAM) return true;
+  const int listener = std::exchange(ends[0], accept(ends[0], nullptr, nullptr));
+  close(listener);
+  return ends[0] >= 0;
+}
+
+bool Make(File file, int (&ends)[2]) {
+  switch (file) {
+    case File::kPipe:
+      return pipe(ends) == 0;
+    case File::kEvent:
+      ends[0] = eventfd(0, 0);
+      return ends[0] >= 0 && (ends[1] = dup(ends[0])) >= 0;
+    case File::kStream:
+      return socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0;
+    case File::kDatagram:
+      return socketpair(AF_UNIX, SOCK_DGRAM, 0, ends) == 0;
+    case File::kSequence:
+      return socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends) == 0;
+    case File::kTcp:
+      return Connect(SOCK_STREAM, ends);
+    case File::kUdp:
+      return Connect(SOCK_DGRAM, ends);
+  }
+  return false;
+}
+
+void Open(Lane& lane, std::mt19937& random, const Decoys& decoys) {
+  // What goes over IP takes longer, and is rarer.
+  constexpr File kFiles[] = {File::kPipe,     File::kPipe,     File::kEvent,    File::kEvent,
+                             File::kStream,   File::kStream,   File::kDatagram, File::kDatagram,
+                             File::kSequence, File::kSequence, File::kTcp,      File::kUdp};
+  lane.file = kFiles[random() % 12];
   int ends[2];
-  const int type = lane.file == File::kStream     ? SOCK_STREAM
-                   : lane.file == File::kDatagram ? SOCK_DGRAM
-                                                  : SOCK_SEQPACKET;
-  const int made = lane.file == File::kPipe ? pipe(ends) : socketpair(AF_UNIX, type, 0, ends);
-  if (made != 0) Fail("no file: %s", strerror(errno));
+  if (!Make(lane.file, ends)) lane.Fails("no file: %s", strerror(errno));
   lane.reads = ends[0];
   lane.writes = ends[1];
   lane.fate = static_cast<Fate>(random() % 4);
-  // Datagrams have no end.
-  lane.comes_to_end = lane.file != File::kDatagram && random() % 4 == 0;
+  lane.call = static_cast<Call>(random() % (IsSocket(lane.file) ? 8 : 4));
+  // A read of an eventfd in pieces gets only the first.
+  if (lane.file == File::kEvent && lane.call == Call::kReadv) lane.call = Call::kRead;
+  lane.comes_to_end = HasEnd(lane.file) && random() % 4 == 0;
+  lane.decoy = decoys.Any(random);
+  lane.has_full_decoy = decoys.IsFull(lane.decoy);
 }
 
-long Read(Call call, int fd, Message* message) {
-  iovec halves[] = {{message, 4}, {reinterpret_cast<char*>(message) + 4, sizeof *message - 4}};
-  msghdr header{};
-  header.msg_iov = halves;
-  header.msg_iovlen = 2;
+// Milliseconds, -1: no end; a poll that is woken, and finds what it is to find, needs none.
+int PollTime(const Lane& lane) {
+  const bool finds_decoy = lane.fate == Fate::kReplaced && lane.has_full_decoy;
+  return lane.fate == Fate::kStays || finds_decoy ? -1 : kPollMs;
+}
+
+long Read(Call call, int fd, Message* message, int poll_time = 0) {
+  iovec halves[] = {{&message->round, 4}, {&message->lane_and_check, 4}};
+  mmsghdr header{};
+  header.msg_hdr.msg_iov = halves;
+  header.msg_hdr.msg_iovlen = 2;
+  pollfd entry{fd, POLLIN, 0};
+  long got = 0;
   switch (call) {
     case Call::kRead:
       return read(fd, message, sizeof *message);
     case Call::kReadv:
       return readv(fd, halves, 2);
+    case Call::kRawRead:
+      return syscall(SYS_read, fd, message, sizeof *message);
+    case Call::kPoll:
+      return poll(&entry, 1, poll_time) == 1 ? entry.revents : 0;
     case Call::kRecv:
       return recv(fd, message, sizeof *message, 0);
     case Call::kRecvmsg:
-      return recvmsg(fd, &header, 0);
-    case Call::kRawRead:
-      return syscall(SYS_read, fd, message, sizeof *message);
+      return recvmsg(fd, &header.msg_hdr, 0);
+    case Call::kRecvmmsg:
+      got = recvmmsg(fd, &header, 1, 0, nullptr);
+      return got == 1 ? header.msg_len : got;
     case Call::kRawRecvfrom:
       return syscall(SYS_recvfrom, fd, message, sizeof *message, 0, nullptr, nullptr);
   }
   return -1;
 }
 
-void BeReader(Lane& lane, unsigned seed) {
+// A poll has said `events`. The number of a closed file may be anybody's by now.
+void CheckPoll(const Lane& lane, long events) {
+  if (lane.fate == Fate::kReplaced && events != (lane.has_full_decoy ? POLLIN : 0)) {
+    lane.Fails("%lx where a decoy that is %s has the number", events,
+               lane.has_full_decoy ? "full" : "empty");
+  }
+  if (lane.fate == Fate::kStays && (events & (POLLIN | POLLHUP)) == 0) {
+    lane.Fails("%lx of what has come", events);
+  }
+}
+
+void CheckRead(const Lane& lane, long got, int error, const Message& message) {
+  if (got != (lane.comes_to_end ? 0 : static_cast<long>(sizeof message))) {
+    lane.Fails("%ld (%s)", got, strerror(error));
+  }
+  if (got > 0 && message != Message::Of(lane.number, lane.round)) {
+    lane.Fails("bytes of another file");
+  }
+}
+
+// Closes the end that was written to. Thousands of connections would leave their ports in
+// TIME_WAIT, but for those whose reader has closed first.
+void CloseWriter(const Lane& lane) {
+  const linger at_once{1, 0};
+  if (lane.file == File::kTcp && !lane.comes_to_end) {
+    setsockopt(lane.writes, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  }
+  Close(lane.writes);
+}
+
+// Nobody has the file's other end any more.
+void CheckGone(const Lane& lane) {
+  if (!HasEnd(lane.file) && lane.file != File::kDatagram) return;
+  if (lane.file == File::kTcp) {
+    pollfd entry{lane.writes, POLLRDHUP, 0};
+    if (poll(&entry, 1, 1000) != 1) lane.Fails("still open");
+    return;
+  }
+  const ssize_t n = write(lane.writes, "x", 1);
+  if (n != -1 ||
+      (errno != EPIPE && errno != ECONNREFUSED && errno != ECONNRESET && errno != ENOTCONN)) {
+    lane.Fails("still open: %zd (%s)", n, strerror(errno));
+  }
+}
+
+void BeReader(Lane& lane, unsigned seed, const Decoys& decoys) {
   std::mt19937 random(seed);
   char path[64];
   snprintf(path, sizeof path, "/proc/self/task/%d/stat", static_cast<int>(gettid()));
   lane.stat = open(path, O_RDONLY | O_CLOEXEC);
   while (g_left > 0) {
     ++lane.round;
-    Open(lane, random);
-    const bool is_pipe = lane.file == File::kPipe;
-    constexpr Call kOfPipes[] = {Call::kRead, Call::kReadv, Call::kRawRead};
-    const Call call = is_pipe ? kOfPipes[random() % 3] : static_cast<Call>(random() % 6);
+    Open(lane, random, decoys);
     Message message{};
-    lane.reader = gettid();
     sem_post(&lane.begins);
-    const long got = Read(call, lane.reads, &message);
+    long got = Read(lane.call, lane.reads, &message, PollTime(lane));
     Count(1);
-    const int error = errno;
-    lane.reader = 0;
+    int error = errno;
     sem_wait(&lane.ends);
-    const char* what = lane.comes_to_end ? "the end" : "a message";
-    if (got != (lane.comes_to_end ? 0 : static_cast<long>(sizeof message))) {
-      Fail("lane %u, round %u, call %d, file %d, fate %d: %ld (%s) instead of %s", lane.number,
-           lane.round, static_cast<int>(call), static_cast<int>(lane.file),
-           static_cast<int>(lane.fate), got, strerror(error), what);
+    if (lane.call == Call::kPoll) {
+      CheckPoll(lane, got);
+      if (lane.fate == Fate::kStays) {
+        got = Read(Call::kRead, lane.reads, &message);
+        error = errno;
+        Count(1);
+      }
     }
-    if (got > 0 && !message.IsOf(lane.number, lane.round)) {
-      Fail("lane %u, round %u, call %d, file %d, fate %d: bytes of another file", lane.number,
-           lane.round, static_cast<int>(call), static_cast<int>(lane.file),
-           static_cast<int>(lane.fate));
+    if (lane.call != Call::kPoll || lane.fate == Fate::kStays) {
+      CheckRead(lane, got, error, message);
     }
     if (lane.fate == Fate::kStays || lane.fate == Fate::kReplaced) Close(lane.reads);
     if (!lane.comes_to_end) {
-      // Nobody has its other end any more.
-      const ssize_t n = write(lane.writes, "x", 1);
-      if (n != -1 || (errno != EPIPE && errno != ECONNREFUSED && errno != ECONNRESET)) {
-        Fail("lane %u, round %u, file %d, fate %d: still open: %zd (%s)", lane.number, lane.round,
-             static_cast<int>(lane.file), static_cast<int>(lane.fate), n, strerror(errno));
-      }
-      Close(lane.writes);
+      CheckGone(lane);
+      CloseWriter(lane);
     }
     for (const int copy : lane.copies) Close(copy);
     lane.copies.clear();
@@ -200,7 +321,8 @@ void AwaitReader(const Lane& lane) {
     usleep(5000);
     return;
   }
-  while (lane.reader == 0 || !Sleeps(lane)) usleep(10);
+  // Once a poll's time is over the reader waits until this lane's round ends.
+  while (!Sleeps(lane)) usleep(10);
 }
 
 void BeCloser(Lane& lane, unsigned seed, const Decoys& decoys) {
@@ -212,7 +334,7 @@ void BeCloser(Lane& lane, unsigned seed, const Decoys& decoys) {
     if (lane.fate == Fate::kClosed || lane.fate == Fate::kUsedAgain) Close(lane.reads);
     if (lane.fate == Fate::kReplaced) {
       Count(1);
-      if (dup2(decoys.Any(random), lane.reads) != lane.reads) Fail("dup2: %s", strerror(errno));
+      if (dup2(lane.decoy, lane.reads) != lane.reads) Fail("dup2: %s", strerror(errno));
     }
     for (unsigned more = lane.fate == Fate::kUsedAgain ? 1 + random() % 3 : 0; more > 0; --more) {
       Count(1);
@@ -221,11 +343,15 @@ void BeCloser(Lane& lane, unsigned seed, const Decoys& decoys) {
     }
     if (random() % 8 == 0) usleep(100);
     if (lane.comes_to_end) {
-      Close(lane.writes);
+      CloseWriter(lane);
     } else {
-      const Message message{lane.number, lane.round, ~lane.round};
+      const Message message = Message::Of(lane.number, lane.round);
       const ssize_t n = write(lane.writes, &message, sizeof message);
-      if (n != sizeof message) Fail("write: %zd (%s)", n, strerror(errno));
+      // On a busy host a poll's time may be over before its file is closed.
+      const bool may_be_gone = lane.call == Call::kPoll && lane.fate != Fate::kStays;
+      if (n != sizeof message && !(n == -1 && may_be_gone && !g_under_tcs)) {
+        lane.Fails("write: %zd (%s)", n, strerror(errno));
+      }
     }
     sem_post(&lane.ends);
   }
@@ -246,7 +372,7 @@ int main(int argc, char** argv) {
     lanes[i].number = i + 1;
     sem_init(&lanes[i].begins, 0, 0);
     sem_init(&lanes[i].ends, 0, 0);
-    threads.emplace_back(BeReader, std::ref(lanes[i]), seed + 2 * i);
+    threads.emplace_back(BeReader, std::ref(lanes[i]), seed + 2 * i, std::cref(decoys));
     threads.emplace_back(BeCloser, std::ref(lanes[i]), seed + 2 * i + 1, std::cref(decoys));
   }
   for (std::thread& thread : threads) thread.join();

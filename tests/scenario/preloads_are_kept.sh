@@ -129,3 +129,57 @@ checks_all() {  # MODE
   done
 }
 in_each_mode checks_all
+
+# A library that wraps functions and goes on to the C library's other names for them, as libfaketime and proxychains do:
+# behind those names there is no way back to it.
+cat >twins.c <<'C'
+#define _GNU_SOURCE
+#include <dlfcn.h>
+/* All arguments are in registers. */
+#define WRAP(name)                                                 \
+  long name(long a, long b, long c, long d, long e, long f) {      \
+    static long (*twin)(long, long, long, long, long, long);       \
+    if (twin == 0) twin = dlsym(RTLD_NEXT, "__" #name);            \
+    return twin(a, b, c, d, e, f);                                 \
+  }
+WRAP(clock_gettime) WRAP(clock_nanosleep) WRAP(close) WRAP(connect) WRAP(dup2) WRAP(fork) WRAP(nanosleep) WRAP(poll)
+WRAP(read) WRAP(sched_getparam) WRAP(sched_getscheduler) WRAP(sched_yield) WRAP(select) WRAP(send) WRAP(sigaction)
+WRAP(sysconf) WRAP(wait) WRAP(waitpid) WRAP(write)
+C
+cc -w -shared -fPIC -o twins.so twins.c -ldl
+cat >wrapped.py <<'PY'
+import os, select, signal, socket, time
+begun = time.monotonic()
+signal.signal(signal.SIGUSR1, lambda *_: None)
+one, other = socket.socketpair()
+address = "\0of-wrapped-%d" % os.getpid()
+listener = socket.socket(socket.AF_UNIX); listener.bind(address); listener.listen()
+client = socket.socket(socket.AF_UNIX); client.connect(address)
+for pause in range(3):
+    child = os.fork()
+    if child == 0:
+        time.sleep(100)
+        one.send(b"x")
+        os._exit(7)
+    poll = select.poll(); poll.register(other, select.POLLIN)
+    assert poll.poll(1000000) and os.read(other.fileno(), 1) == b"x" and select.select([other], [], [], 100) == ([], [], [])
+    assert os.waitpid(child, 0)[1] == 7 << 8
+os.sched_yield(); os.sched_getparam(0); os.sched_getscheduler(0); os.sysconf("SC_OPEN_MAX"); os.dup2(1, 99); os.close(99)
+os.write(1, b"%d\n" % round((time.monotonic() - begun) / 100))
+PY
+wraps() {  # MODE
+  local says
+  says=$(timeout 30 "$tcsim" exec --accounting "$1" -- env LD_PRELOAD="$folder/twins.so" python3 wrapped.py) ||
+    fail "$1, wrapped: status $?"
+  [[ $says == 6 ]] || fail "$1, wrapped: '$says'"
+}
+[[ -z $(LD_PRELOAD="$folder/twins.so" sh -c 'exit 0' 2>&1) ]] || { echo "it cannot wrap here"; exit 0; }
+in_each_mode wraps
+faketime=$(find /usr/lib /usr/local/lib -name libfaketimeMT.so.1 2>/dev/null | head -n 1)
+dates() {  # MODE
+  local says
+  says=$(timeout 30 "$tcsim" exec --accounting "$1" -- env LD_PRELOAD="$faketime" FAKETIME='@2001-02-03 04:05:06' \
+    sh -c 'date +%F; sleep 86400; date +%F') || fail "$1, libfaketime: status $?"
+  [[ $says == $'2001-02-03\n2001-02-0'[34] ]] || fail "$1, libfaketime: $says"
+}
+[[ -z $faketime ]] || in_each_mode dates

@@ -10,32 +10,6 @@ trap 'rm -rf "$work"' EXIT
 chmod 755 "$work"
 cd "$work"
 install_for_everybody "$build" "$work"
-cat >starts.cc <<'CC'
-#include <QCoreApplication>
-#include <QElapsedTimer>
-#include <QProcess>
-#include <cstdio>
-int main(int argc, char** argv) {
-  QCoreApplication application(argc, argv);
-  const char* const commands[] = {"echo hi", "sleep 2; echo later", "cat; sleep 1"};
-  for (const char* command : commands) {
-    QElapsedTimer timer;
-    timer.start();
-    QProcess process;
-    process.start("/bin/sh", QStringList() << "-c" << command);
-    const bool started = process.waitForStarted();
-    process.write("what was written");
-    process.closeWriteChannel();
-    const bool finished = process.waitForFinished();
-    printf("%d %d %d %s, %lld ns\n", started, finished, process.exitCode(),
-           process.readAllStandardOutput().trimmed().constData(),
-           static_cast<long long>(timer.nsecsElapsed()));
-  }
-  QProcess missing;
-  missing.start("/no/such/program", QStringList());
-  printf("missing: %d\n", missing.waitForStarted());
-}
-CC
 expect() {  # WHOSE SAID
   local line what ns=() slack=60000000
   line=$(sed 's/, [0-9]* ns$//' <<<"$2")
@@ -48,7 +22,7 @@ expect() {  # WHOSE SAID
 found=0
 for qt in 5 6; do
   flags=$(pkg-config --cflags --libs Qt${qt}Core 2>/dev/null) || continue
-  g++ -O1 -fPIC -o qt$qt starts.cc $flags || fail "Qt $qt"
+  g++ -O1 -fPIC -o qt$qt "$source_root/tests/scenario/runtimes/starts.cc" $flags || fail "Qt $qt"
   chmod 755 qt$qt
   found=1 first=
   expect "Qt $qt, measured" "$(timeout 60 "$tcsim" exec -- ./qt$qt)"
