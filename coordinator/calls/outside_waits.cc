@@ -60,7 +60,7 @@ void OutsideWaits::PublishIn(shm::OutsideFiles& files) {
         struct stat status;
         // Sockets are known by whom they reach (Connects).
         if (!name.starts_with('/') || stat(name.c_str(), &status) != 0) continue;
-        if (!S_ISSOCK(status.st_mode)) Publish(shm::OutsideKeyOf(status), name, true);
+        if (!S_ISSOCK(status.st_mode)) Publish(shm::OutsideKeyOf(status), name, true, nullptr);
       }
     }
   }
@@ -83,28 +83,42 @@ bool OutsideWaits::MayComeFromOutside() const {
                      [](const File& file) { return file.is_always || file.state != State::kIdle; });
 }
 
-// In the place of one that is gone, or in a new one. Null: there is no room, and the file is as any
-// other.
-OutsideWaits::File* OutsideWaits::Publish(std::uint64_t key, std::string name, bool is_always) {
-  if (File* known = Find(key); known != nullptr) return known;
-  auto free =
-      std::find_if(files_.begin(), files_.end(), [](const File& file) { return file.key == 0; });
-  if (free == files_.end()) {
-    const std::uint32_t used = published_->used.load();
-    if (used == shm::OutsideFiles::kPlaces) return nullptr;
+// One that is gone, or a new one; or else that of a socket on which nothing is asked, the ones of
+// programs that have ended first. Null: there is none.
+OutsideWaits::File* OutsideWaits::FreeFile() {
+  const auto find = [this](auto is_free) {
+    const auto found = std::find_if(files_.begin(), files_.end(), is_free);
+    return found == files_.end() ? nullptr : &*found;
+  };
+  if (File* gone = find([](const File& file) { return file.key == 0; })) return gone;
+  const std::uint32_t used = published_->used.load();
+  if (used < shm::OutsideFiles::kPlaces) {
     files_.emplace_back().place = &published_->places[used];
-    free = files_.end() - 1;
     published_->used.store(used + 1);
+    return &files_.back();
   }
-  auto* const place = free->place;
-  *free = File{};
-  free->place = place;
-  free->key = key;
-  free->name = std::move(name);
-  free->is_always = is_always;
-  ShowFrom(*free, is_always ? shm::kOutsideRests : 0);
+  const auto rests = [](const File& file) { return file.state == State::kIdle && !file.is_always; };
+  File* left = find([&](const File& file) { return rests(file) && file.process->dead; });
+  return left != nullptr ? left : find(rests);
+}
+
+// Null: there is no room, and the file is as any other.
+OutsideWaits::File* OutsideWaits::Publish(std::uint64_t key, std::string name, bool is_always,
+                                          const Process* process) {
+  if (File* known = Find(key); known != nullptr) return known;
+  File* file = FreeFile();
+  if (file == nullptr) return nullptr;
+  auto* const place = file->place;
+  place->key.store(0);
+  *file = File{};
+  file->place = place;
+  file->key = key;
+  file->name = std::move(name);
+  file->is_always = is_always;
+  file->process = process;
+  ShowFrom(*file, is_always ? shm::kOutsideRests : 0);
   place->key.store(key);
-  return &*free;
+  return file;
 }
 
 void OutsideWaits::ShowFrom(File& file, std::int64_t ns) { file.place->seen_from_ns.store(ns); }
@@ -152,14 +166,14 @@ void OutsideWaits::Connects(const Task& task, int fd) {
     std::error_code unreadable;
     const auto path =
         std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", fd), unreadable);
-    Publish(shm::OutsideKeyOf(status), path.string(), true);
+    Publish(shm::OutsideKeyOf(status), path.string(), true, task.process);
     return;
   }
   const std::optional<Peers::Peer> peer = peers_.Of(*task.process, fd);
   if (!peer.has_value()) return;
   const bool is_named = IsNamed(*task.process, peer->name);
   if (!peer->is_outside && !is_named) return;
-  Publish(shm::OutsideKeyOf(status), peer->name, is_named);
+  Publish(shm::OutsideKeyOf(status), peer->name, is_named, task.process);
 }
 
 // Others of the same file may be left: of the process's, and of those that it has made.
@@ -174,7 +188,7 @@ void OutsideWaits::Closes(const Task& task, int fd) {
            fmt::format("/proc/{}/fd", task.process->pid), unreadable)) {
     left += std::filesystem::read_symlink(each.path(), unreadable).string() == wanted ? 1 : 0;
   }
-  if (left > 1 || (file->process != nullptr && file->process != task.process)) return;
+  if (left > 1 || file->process != task.process) return;
   Rest(*file);
   ShowFrom(*file, 0);
   file->place->key.store(0);

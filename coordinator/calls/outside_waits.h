@@ -80,7 +80,7 @@ class OutsideWaits {
     std::string name;
     bool is_always = false;  // waited for without a request
     shm::OutsideFiles::Place* place = nullptr;
-    const Process* process = nullptr;  // that asked
+    const Process* process = nullptr;  // that has connected it, or asked; of named files: null at first
     State state = State::kIdle;
     bool is_awaited = false, has_outlasted = false;
     VirtualTime asked_at, seen_from;
@@ -91,7 +91,8 @@ class OutsideWaits {
 
   File* Find(std::uint64_t key);
   File* FileOf(int fd);
-  File* Publish(std::uint64_t key, std::string name, bool is_always);
+  File* FreeFile();
+  File* Publish(std::uint64_t key, std::string name, bool is_always, const Process* process);
   void Connects(const Task& task, int fd);
   void Closes(const Task& task, int fd);
   template <class Take>

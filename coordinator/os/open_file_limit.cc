@@ -1,6 +1,5 @@
 #include "coordinator/os/open_file_limit.h"
 
-#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <optional>
@@ -28,11 +27,9 @@ void RestoreOpenFileLimit() {
 std::string WhyNoFurtherFile() {
   rlimit limit{};
   getrlimit(RLIMIT_NOFILE, &limit);
-  return fmt::format(
-      "this run has {} files open, which is the limit, and needs several for each of its "
-      "processes; "
-      "raise the limit (ulimit -n), or start fewer processes",
-      limit.rlim_cur);
+  return "this run has " + std::to_string(limit.rlim_cur) +
+         " files open, which is the limit, and needs several for each of its processes; raise the "
+         "limit (ulimit -n), or start fewer processes";
 }
 
 }  // namespace tcs
