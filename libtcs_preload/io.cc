@@ -58,6 +58,7 @@ ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
       [&](int from, const iovec* part, std::size_t n) -> long {
         part_of.msg_iov = const_cast<iovec*>(part);
         part_of.msg_iovlen = n;
+        if (IsHidden(*t, OutsideOf(from))) return -EAGAIN;
         AcknowledgeAtOnce(from);
         const long got =
             RawSyscall(SYS_recvmsg, from, Arg(&part_of), (flags & ~MSG_WAITALL) | MSG_DONTWAIT);
@@ -190,7 +191,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   };
   const auto take = [&](int from) {
     BeginTaking(*t, from, true);
-    const long result = try_it(from);
+    const long result = IsHidden(*t, OutsideOf(from)) ? -EAGAIN : try_it(from);
     if (result > 0 && Takes(flags)) {
       NoteTakes(*t, from);
       NoteReceived(*t);

@@ -84,11 +84,12 @@ bool IsHiddenFromLook(GuestThread& thread, int fd) {
 }
 
 void BeginLookIntoSet(GuestThread& thread, int epoll_fd) {
-  if (IsAnythingOutside()) Tell(thread, OutsideEvent::kLooks, epoll_fd);
+  if (IsAnythingHidden(thread)) Tell(thread, OutsideEvent::kLooks, epoll_fd);
 }
 
 void BeginLooks(GuestThread& thread, const pollfd* fds, unsigned long count) {
-  if (!IsAnythingOutside()) return;
+  constexpr unsigned long kMost = 1 << 20;
+  if (!IsAnythingOutside() || count > kMost || !CanRead(fds, count * sizeof *fds)) return;
   for (unsigned long i = 0; i < count; ++i) {
     if ((fds[i].events & POLLIN) != 0) IsHiddenFromLook(thread, fds[i].fd);
   }
@@ -180,7 +181,9 @@ void NoteOpens(int fd) {
   if (GuestThread* t = Current(); t != nullptr) Tell(*t, OutsideEvent::kConnects, fd);
 }
 
-void NoteConnects(GuestThread& thread, int fd) { Tell(thread, OutsideEvent::kConnects, fd); }
+void NoteConnects(GuestThread& thread, int fd) {
+  if (g_header->sync == shm::Sync::kConsistent) Tell(thread, OutsideEvent::kConnects, fd);
+}
 
 void NoteAsks(GuestThread& thread, int fd, std::uint64_t begun_tsc) {
   if (OutsideOf(fd) != nullptr) Tell(thread, OutsideEvent::kAsks, fd, begun_tsc);

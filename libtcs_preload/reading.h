@@ -151,7 +151,8 @@ ssize_t WaitAndRead(GuestThread& t, int fd, Take& take) {
   for (bool again = false;; again = true) {
     const FdState state = AwaitEvent(file, POLLIN, deadline, again);
     if (state == FdState::kFailed) return -1;
-    const long result = take.TryIt(file.fd());
+    const bool is_hidden = IsHidden(t, OutsideOf(file.fd()));
+    const long result = is_hidden ? -EAGAIN : take.TryIt(file.fd());
     if (result != -EAGAIN) return PassOnAfter(t, result);
     if (state == FdState::kTimedOut) return timeout != shm::kNeverNs ? 0 : Fail(EAGAIN);
   }

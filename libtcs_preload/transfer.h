@@ -10,6 +10,7 @@
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/kernel_wait.h"
+#include "libtcs_preload/outside.h"
 
 namespace tcs::preload {
 
@@ -78,7 +79,8 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
     }
     const bool can_part = n != -EOPNOTSUPP || done > 0;
     if (n != -EAGAIN && can_part) return done > 0 ? done : n;
-    if ((!can_part || done == 0) && PollNow(file.fd(), events)) {
+    const bool is_hidden = (events & POLLIN) != 0 && IsHidden(thread, OutsideOf(file.fd()));
+    if ((!can_part || done == 0) && !is_hidden && PollNow(file.fd(), events)) {
       if (!can_part) return whole(file.fd());
       // It waits for what cannot be polled: room in the queue of the socket that it sends to.
       return WaitInKernel(thread, true, [&] { return whole(file.fd()); });

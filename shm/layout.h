@@ -119,8 +119,8 @@ enum class NotificationKind : std::uint32_t {
                        // first, args[2]: WhereReads
   kChildUsage = 38,    // args[0]: pid of a child that has ended; reply[0]: what it and its own
                        // children were charged, ns; -1: not known
-  kOutside = 40,       // of a file by which the program may meet what is outside of the run; args: an
-                       // OutsideEvent, and what it says (outside_files.h)
+  kOutside = 40,  // of a file by which the program may meet what is outside of the run; args: an
+                  // OutsideEvent, and what it says (outside_files.h)
 };
 
 // The signal by which the coordinator stops a thread that computes, where only gates keep threads

@@ -4,7 +4,7 @@
 // (coordinator/calls/outside_waits.h).
 //
 // Written by the coordinator, read by all clients at any time; behind the rest of the run's memory
-// (own_receivers.h). A place that is used keeps its key until another file needs it.
+// (own_receivers.h). A place is free again once its file is closed.
 #pragma once
 
 #include <sys/stat.h>

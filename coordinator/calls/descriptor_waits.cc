@@ -46,8 +46,8 @@ void DescriptorWaits::Add(const Task& task, Copy copy, const Subject& subject,
   watched.asked.push_back(copy.asked);
 }
 
-// The set itself would tell of what is hidden, too. What of the others is there already the thread
-// has had, or it does not want it.
+// The set itself would tell of what is hidden, too. Of the others, what is told of once only, and
+// is there already, the thread has been told of.
 void DescriptorWaits::AddMembers(const Task& task, int set, const Subject& subject,
                                  awaited::Descriptors& watched) {
   constexpr std::uint32_t kAsked = EPOLLIN | EPOLLOUT | EPOLLPRI | EPOLLRDHUP | EPOLLRDNORM;
@@ -55,8 +55,10 @@ void DescriptorWaits::AddMembers(const Task& task, int set, const Subject& subje
     UniqueFd member = CopyOfDescriptor(*task.process, entry.fd);
     const std::uint32_t events = entry.events & kAsked;
     if (!member || events == 0 || outside_.IsHidden(member.get(), task.reached)) continue;
-    if (!Arm(member.get(), events | EPOLLET, subject, watched)) continue;
-    if (IsReady(member.get(), events)) watched.skips_in = reactor_.next_look();
+    // What tells each time is told of once more by the next look.
+    const bool tells_once = (entry.events & EPOLLET) != 0;
+    if (!Arm(member.get(), events | (tells_once ? std::uint32_t{EPOLLET} : 0U), subject, watched)) continue;
+    if (tells_once && IsReady(member.get(), events)) watched.skips_in = reactor_.next_look();
     watched.members.push_back(std::move(member));
   }
 }
@@ -103,6 +105,20 @@ awaited::Descriptors DescriptorWaits::WatchKept(Task& task) {
     if (awaits_news && IsReady(fd, events)) watched.skips_in = reactor_.next_look();
   }
   return watched;
+}
+
+void DescriptorWaits::BeginAgain(Task& task) {
+  auto* watched = task.Awaits<awaited::Descriptors>();
+  if (watched == nullptr) return;
+  const Subject subject = SubjectOf(task, *watched);
+  for (std::size_t i = 0; i < watched->fds.size(); ++i) {
+    const int fd = watched->fds[i].get();
+    const std::uint32_t asked = watched->asked[i].events;
+    if ((asked & EPOLLIN) == 0 || !outside_.BeginsWait(task, fd)) continue;
+    watched->has_hidden = true;
+    reactor_.Modify(fd, (asked & EPOLLOUT) | EPOLLONESHOT, subject);
+    if (watched->members.empty()) AddMembers(task, fd, subject, *watched);
+  }
 }
 
 void DescriptorWaits::LookAgain(Task& task) {

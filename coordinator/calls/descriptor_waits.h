@@ -37,6 +37,8 @@ class DescriptorWaits {
   awaited::Descriptors WatchAsAsked(Task& task, const shm::Notification& note);
   // The wait is a new one, behind all others that want to take from the same descriptor.
   void GoBehind(Task& task, awaited::Descriptors& watched);
+  // Something was asked for by what the waiting thread may wait for: it is hidden from then on.
+  void BeginAgain(Task& task);
   // What was hidden from the waiting thread may be no more (outside_waits.h).
   void LookAgain(Task& task);
   // The wait is over.

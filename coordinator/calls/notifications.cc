@@ -42,6 +42,20 @@ pid_t Notifications::ProcessNamed(const Task& by, std::int64_t said) {
   return named == nullptr ? 0 : named->pid;
 }
 
+bool Notifications::MeetsOutside(Task& task, const shm::Notification& note) {
+  switch (parts_.outside.Handle(task, note)) {
+    case OutsideWaits::Next::kGoesOn:
+      break;
+    case OutsideWaits::Next::kHolds:
+      waker_.Hold(task, shm::NotificationKind::kRead);
+      break;
+    case OutsideWaits::Next::kHasAsked:
+      for (Task& other : run_.table.tasks()) parts_.descriptors.BeginAgain(other);
+      break;
+  }
+  return true;
+}
+
 // Equals have their turn.
 bool Notifications::Yield(Task& task) {
   SchedulerOf(task).Yield(task.order);
@@ -145,8 +159,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       waker_.Hold(task, Kind::kWrite);
       break;
     case Kind::kOutside:
-      if (parts_.outside.Handle(task, note)) waker_.Hold(task, Kind::kRead);
-      looks_again = true;
+      looks_again = MeetsOutside(task, note);
       break;
     case Kind::kChildUsage:
       task.reply[0] = task.process->ended_children.ChargedNs(static_cast<pid_t>(note.args[0]));

@@ -49,6 +49,7 @@ class Notifications {
 
  private:
   static VirtualTime WaitDeadlineOf(const Task& task, const shm::Notification& note);
+  bool MeetsOutside(Task& task, const shm::Notification& note);
   pid_t ProcessNamed(const Task& by, std::int64_t said);
 
   RunState& run_;

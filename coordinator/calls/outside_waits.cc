@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/epoll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -33,6 +34,11 @@ constexpr HostDuration kLongestNews = HostDuration::Seconds(1);
 
 VirtualDuration Passed(HostDuration real, double speed) {
   return VirtualNs(std::llround(static_cast<double>(real.ns()) * speed));
+}
+
+bool HasInput(int fd) {
+  pollfd probe{fd, POLLIN, 0};
+  return poll(&probe, 1, 0) > 0;
 }
 
 double SpeedOf(const Process& process) { return process.robot->outside_speed; }
@@ -78,9 +84,11 @@ OutsideWaits::File* OutsideWaits::FileOf(int fd) {
   return Find(shm::OutsideKeyOf(status));
 }
 
-bool OutsideWaits::MayComeFromOutside() const {
-  return std::any_of(files_.begin(), files_.end(),
-                     [](const File& file) { return file.is_always || file.state != State::kIdle; });
+bool OutsideWaits::MayMeetOutside(const Process& process) const {
+  return std::any_of(files_.begin(), files_.end(), [&](const File& file) {
+    const bool may_wait = file.process == nullptr || file.process->client == process.client;
+    return file.state != State::kIdle || (file.is_always && may_wait);
+  });
 }
 
 // One that is gone, or a new one; or else that of a socket on which nothing is asked, the ones of
@@ -121,42 +129,51 @@ OutsideWaits::File* OutsideWaits::Publish(std::uint64_t key, std::string name, b
   return file;
 }
 
-void OutsideWaits::ShowFrom(File& file, std::int64_t ns) { file.place->seen_from_ns.store(ns); }
+void OutsideWaits::ShowFrom(File& file, std::int64_t ns) {
+  file.place->seen_from_ns.store(file.is_bare ? 0 : ns);
+}
 
-bool OutsideWaits::Handle(Task& task, const shm::Notification& note) {
-  if (published_ == nullptr) return false;
+OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& note) {
+  if (published_ == nullptr) return Next::kGoesOn;
   const auto event = static_cast<shm::OutsideEvent>(note.args[0]);
   const UniqueFd copy = CopyOfDescriptor(*task.process, static_cast<int>(note.args[1]));
-  if (!copy) return false;
+  if (!copy) return Next::kGoesOn;
   if (event == shm::OutsideEvent::kConnects) {
     Connects(task, copy.get());
-    return false;
+    return Next::kGoesOn;
   }
   if (event == shm::OutsideEvent::kLooks) {
     BeginsWait(task, copy.get());
-    return true;
+    return Next::kHolds;
   }
   File* file = FileOf(copy.get());
-  if (file == nullptr) return false;
+  if (file == nullptr) return Next::kGoesOn;
   switch (event) {
     case shm::OutsideEvent::kAsks:
-      file->has_outlasted = false;
-      if (file->state == State::kIdle && !file->is_always) {
-        Ask(*file, task, SinceTsc(static_cast<std::uint64_t>(note.args[2])));
-      }
-      break;
+      // What is still to be taken is no answer to this, and stays to be seen.
+      if (file->state != State::kIdle || file->is_always || file->has_outlasted) break;
+      if (HasInput(copy.get())) break;
+      Ask(*file, task, SinceTsc(static_cast<std::uint64_t>(note.args[2])));
+      return Next::kHasAsked;
     case shm::OutsideEvent::kTakes:
       file->has_outlasted = false;
       Rest(*file);
+      if (HasInput(copy.get())) ShowRest(*file);
       break;
     case shm::OutsideEvent::kCloses:
-      Closes(task, copy.get());
+      Closes(copy.get());
       break;
     case shm::OutsideEvent::kConnects:
     case shm::OutsideEvent::kLooks:
       break;
   }
-  return false;
+  return Next::kGoesOn;
+}
+
+// The rest of what has been taken.
+void OutsideWaits::ShowRest(File& file) {
+  file.state = State::kShown;
+  ShowFrom(file, 0);
 }
 
 void OutsideWaits::Connects(const Task& task, int fd) {
@@ -176,19 +193,22 @@ void OutsideWaits::Connects(const Task& task, int fd) {
   Publish(shm::OutsideKeyOf(status), peer->name, is_named, task.process);
 }
 
-// Others of the same file may be left: of the process's, and of those that it has made.
-void OutsideWaits::Closes(const Task& task, int fd) {
+// Others of the same file may be left, here and in other processes of the run.
+void OutsideWaits::Closes(int fd) {
   File* file = FileOf(fd);
   struct stat status;
   if (file == nullptr || (file->key & shm::kOutsideSocket) == 0 || fstat(fd, &status) != 0) return;
   const std::string wanted = fmt::format("socket:[{}]", status.st_ino);
   int left = 0;
-  std::error_code unreadable;
-  for (const auto& each : std::filesystem::directory_iterator(
-           fmt::format("/proc/{}/fd", task.process->pid), unreadable)) {
-    left += std::filesystem::read_symlink(each.path(), unreadable).string() == wanted ? 1 : 0;
+  for (const Process& process : run_.table.processes()) {
+    if (process.dead) continue;
+    std::error_code unreadable;
+    for (const auto& each :
+         std::filesystem::directory_iterator(fmt::format("/proc/{}/fd", process.pid), unreadable)) {
+      left += std::filesystem::read_symlink(each.path(), unreadable).string() == wanted ? 1 : 0;
+    }
   }
-  if (left > 1 || file->process != task.process) return;
+  if (left > 1) return;
   Rest(*file);
   ShowFrom(*file, 0);
   file->place->key.store(0);
@@ -200,8 +220,7 @@ HostDuration OutsideWaits::SinceTsc(std::uint64_t tsc) const {
   const std::uint64_t now = __rdtsc();
   if (tsc > now) return {};
   const double passed_ns = static_cast<double>(now - tsc) / run_.ticks_per_ns;
-  return passed_ns < static_cast<double>(kLongestNews.ns()) ? HostNs(std::llround(passed_ns))
-                                                            : HostDuration();
+  return std::min(kLongestNews, HostNs(std::llround(std::min(passed_ns, 1e18))));
 }
 
 void OutsideWaits::Ask(File& file, const Task& task, HostDuration ago) {
@@ -223,11 +242,14 @@ void OutsideWaits::ForEachAt(const Task& task, int fd, Take take) {
     if (File* file = Find(shm::OutsideKeyOf(status)); file != nullptr) take(*file, fd);
     return;
   }
-  if (!MayComeFromOutside()) return;
+  if (!MayMeetOutside(*task.process)) return;
   for (const EpollEntry& entry : EntriesOf(fd)) {
     const UniqueFd copy = CopyOfDescriptor(*task.process, entry.fd);
     File* file = copy ? FileOf(copy.get()) : nullptr;
-    if (file != nullptr) take(*file, copy.get());
+    if (file == nullptr) continue;
+    // Who is told of room, too, is told of both at once.
+    if ((entry.events & EPOLLOUT) != 0 && !std::exchange(file->is_bare, true)) ShowFrom(*file, 0);
+    take(*file, copy.get());
   }
 }
 
@@ -247,6 +269,7 @@ bool OutsideWaits::Hides(const Task& task, int fd) {
 }
 
 bool OutsideWaits::IsHidden(const File& file, VirtualTime at) {
+  if (file.is_bare) return false;
   return file.state == State::kAsked || (file.state == State::kCame && file.seen_from > at);
 }
 
@@ -286,6 +309,7 @@ void OutsideWaits::Unwatch(File& file) {
 // Nothing is waited for.
 void OutsideWaits::Rest(File& file) {
   Unwatch(file);
+  has_rested_ |= file.state == State::kAsked || file.state == State::kCame;
   if (std::exchange(file.is_awaited, false)) --awaited_;
   file.state = State::kIdle;
   ShowFrom(file, file.is_always && !file.has_outlasted ? shm::kOutsideRests : 0);
@@ -349,8 +373,7 @@ void OutsideWaits::GiveUp(File& file) {
   run_.Warn(fmt::format(
       "{} has waited {:g} s, of real time, for {}, which is outside of the run; it is not waited "
       "for "
-      "any more until the program sends to it again, or something comes from there (its `outside: "
-      "{{patience: TIME}}` sets how long)",
+      "any more until something comes from there (its `outside: {{patience: TIME}}` sets how long)",
       file.process->name, spec.outside.patience.seconds(), file.name));
   file.has_outlasted = true;
   Rest(file);

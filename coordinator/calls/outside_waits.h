@@ -41,8 +41,10 @@ class OutsideWaits {
   // then on.
   void PublishIn(shm::OutsideFiles& files);
 
-  // The thread says what it does with a file. True: it is to hold, as for a read.
-  bool Handle(Task& task, const shm::Notification& note);
+  // The thread says what it does with a file. kHolds: it is to hold, as for a read. kHasAsked:
+  // those who wait already wait for the answer from now on.
+  enum class Next { kGoesOn, kHolds, kHasAsked };
+  Next Handle(Task& task, const shm::Notification& note);
 
   // The thread begins to wait at the file, or the epoll set, of which `fd` is a copy. True: what
   // comes by it, or by a member, is hidden from it, and the wait must not end by that until Show()
@@ -52,6 +54,10 @@ class OutsideWaits {
   bool Hides(const Task& task, int fd);
   // Whether it is hidden now from those who are at that time; of an epoll set: false.
   bool IsHidden(int fd, VirtualTime at);
+
+  // Whether something was hidden until it was taken, closed or given up: who waits for it has to
+  // look again.
+  bool TakeRested() { return std::exchange(has_rested_, false); }
 
   // Something has come, and was found at the virtual time `at`.
   void HasCome(const Subject& subject, HostTime now, VirtualTime at);
@@ -80,9 +86,11 @@ class OutsideWaits {
     std::string name;
     bool is_always = false;  // waited for without a request
     shm::OutsideFiles::Place* place = nullptr;
-    const Process* process = nullptr;  // that has connected it, or asked; of named files: null at first
+    const Process* process =
+        nullptr;  // that has connected it, or asked; of named files: null at first
     State state = State::kIdle;
     bool is_awaited = false, has_outlasted = false;
+    bool is_bare = false;  // nothing of it is hidden
     VirtualTime asked_at, seen_from;
     HostTime asked_real;
     UniqueFd copy;             // watched while it is awaited
@@ -94,7 +102,8 @@ class OutsideWaits {
   File* FreeFile();
   File* Publish(std::uint64_t key, std::string name, bool is_always, const Process* process);
   void Connects(const Task& task, int fd);
-  void Closes(const Task& task, int fd);
+  void Closes(int fd);
+  void ShowRest(File& file);
   template <class Take>
   void ForEachAt(const Task& task, int fd, Take take);
   static bool IsHidden(const File& file, VirtualTime at);
@@ -104,7 +113,7 @@ class OutsideWaits {
   void Unwatch(File& file);
   void Rest(File& file);
   void GiveUp(File& file);
-  bool MayComeFromOutside() const;
+  bool MayMeetOutside(const Process& process) const;
   VirtualTime DueOf(const File& file, HostTime now) const;
   static void ShowFrom(File& file, std::int64_t ns);
 
@@ -115,6 +124,7 @@ class OutsideWaits {
   shm::OutsideFiles* published_ = nullptr;
   std::deque<File> files_;  // never moved
   int awaited_ = 0;         // of those
+  bool has_rested_ = false;
   std::uint32_t watches_ = 0;
 };
 

@@ -390,6 +390,7 @@ bool Engine::Step() {
   LookAround();
   dds_.TakeOwnMessages();
   ahead_.Look();
+  if (outside_.TakeRested()) LookAgainAtHidden();
   if (outside_.IsAwaited() || shows_outside_) ShowOutside();
   // Where everything is at the start, people see who watch a run that stands there.
   if (pacing_.IsOn() && world_.present() && world_.NextStop() == VirtualTime() && StepWorld())

@@ -137,6 +137,7 @@ class Engine {
   void WaitOutside();
   bool StepOutside();
   void ShowOutside();
+  void LookAgainAtHidden();
   Moment WhenItCame(Moment moment);
   void WaitForDebugger();
   bool AwaitOutside();

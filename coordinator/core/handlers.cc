@@ -76,8 +76,7 @@ Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
   auto* wait = task.Awaits<awaited::Descriptors>();
   if (wait == nullptr || subject != DescriptorWaits::SubjectOf(task, *wait)) return {};
   // What comes in a later look is news: what was there may have gone before it was looked for.
-  const std::uint64_t skips_in = std::exchange(wait->skips_in, 0);
-  if (skips_in != 0 && skips_in + 1 >= reactor_.next_look()) return {};
+  if (wait->skips_in != 0 && wait->skips_in + 1 >= reactor_.next_look()) return {};
   ready_awaiters_.push_back(&task);
   return {.wakes_others = true};
 }

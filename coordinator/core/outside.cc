@@ -20,10 +20,18 @@ void Engine::ShowOutside() {
   run_.root.Update(outside_leaf_, VirtualTime(), outside_.Due(RunningTime()));
 }
 
+// What was hidden may be no more.
+void Engine::LookAgainAtHidden() {
+  for (Task& task : run_.table.tasks()) descriptors_.LookAgain(task);
+}
+
 // Nothing is before what comes from outside next: it is shown, or waited for in real time. False
 // where somebody else acts first.
 bool Engine::StepOutside() {
-  if (!outside_.IsAwaited()) return false;
+  if (!outside_.IsAwaited()) {
+    if (shows_outside_) ShowOutside();
+    return false;
+  }
   ShowOutside();
   const VirtualTime least = run_.root.Least();
   if (run_.root.First() != outside_leaf_ || least >= run_.end) return false;
@@ -33,8 +41,8 @@ bool Engine::StepOutside() {
   run_.latest = std::max(run_.latest, std::min(at, least));
   if (outside_.Show(least, now)) {
     ShowOutside();
-    for (Task& task : run_.table.tasks()) descriptors_.LookAgain(task);
-    PollEvents(kNoWait, {.at = at, .from_outside = true});
+    LookAgainAtHidden();
+    PollEvents(kNoWait, {.at = least, .from_outside = true});
     return true;
   }
   LookAround();
@@ -50,7 +58,7 @@ bool Engine::StepOutside() {
 
 // While it is waited for, what comes does so at the virtual time that the real one stands for.
 Moment Engine::WhenItCame(Moment moment) {
-  if (!awaits_outside_ || run_.turn.lasts()) return moment;
+  if (!awaits_outside_ || run_.turn.lasts() || !outside_.IsAwaited()) return moment;
   const VirtualTime until = run_.root.NextInput(outside_leaf_);
   moment.at = std::max(moment.at, std::min(outside_.At(RunningTime()), until));
   return moment;

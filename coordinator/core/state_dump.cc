@@ -344,7 +344,9 @@ class Look {
     const TemporalConsistency::Leaf first = run_.root.First();
     std::string whom = "the world";
     if (first >= 0 && static_cast<std::size_t>(first) >= run_.cpus.size()) {
-      whom = "the network between the robots";
+      const bool is_network =
+          run_.scenario.network.has_value() && static_cast<std::size_t>(first) == run_.cpus.size();
+      whom = is_network ? "the network between the robots" : "what is outside of the run";
     } else if (first >= 0 && (task.cpu == nullptr || first != task.cpu->leaf)) {
       const VirtualCpu& cpu = run_.cpus[static_cast<std::size_t>(first)];
       whom = fmt::format("core {} of {}", cpu.core, cpu.robot->name);

@@ -18,6 +18,7 @@ namespace {
 struct Place {
   std::uint32_t address[4] = {};
   std::uint16_t port = 0;
+  bool is_mapped = false;  // an IPv4 address that IPv6 was given
 };
 
 Place PlaceOf(const sockaddr_storage& address) {
@@ -30,7 +31,13 @@ Place PlaceOf(const sockaddr_storage& address) {
   } else {
     sockaddr_in6 six;
     memcpy(&six, &address, sizeof six);
-    memcpy(place.address, &six.sin6_addr, sizeof six.sin6_addr);
+    place.is_mapped = IN6_IS_ADDR_V4MAPPED(&six.sin6_addr);
+    const unsigned char* bytes = six.sin6_addr.s6_addr;
+    if (place.is_mapped) {
+      memcpy(place.address, bytes + 12, 4);
+    } else {
+      memcpy(place.address, bytes, sizeof six.sin6_addr);
+    }
     place.port = six.sin6_port;
   }
   return place;
@@ -88,7 +95,8 @@ std::optional<std::uint64_t> ServerOf(int fd, const sockaddr_storage& peer) {
   }
   const bool is_tcp = type == SOCK_STREAM;
   const Place server = PlaceOf(peer), client = PlaceOf(own);
-  Request request = RequestFor(peer.ss_family, is_tcp ? IPPROTO_TCP : IPPROTO_UDP);
+  const int family = server.is_mapped ? AF_INET : peer.ss_family;
+  Request request = RequestFor(family, is_tcp ? IPPROTO_TCP : IPPROTO_UDP);
   inet_diag_sockid& id = request.body.id;
   memcpy(is_tcp ? id.idiag_src : id.idiag_dst, server.address, sizeof server.address);
   (is_tcp ? id.idiag_sport : id.idiag_dport) = server.port;

@@ -107,7 +107,7 @@ std::optional<Peers::Peer> Peers::InternetPeer(const Process& process, int fd) {
   }
   std::optional<std::uint64_t> server;
   if (address.ss_family != AF_UNSPEC) server = ServerOf(fd, address);
-  if (!server.has_value()) server = ServerInTables(process, *remote, is_tcp);
+  if (server.value_or(0) == 0) server = ServerInTables(process, *remote, is_tcp);
   peer.is_outside = *server != 0 && !IsOfRun(*server);
   return peer;
 }

@@ -15,7 +15,7 @@ class RegistrationSocketsTest : public testing::Test {
  protected:
   void SetUp() override {
     reactor_.On(Tag::kListener, [this](const Subject& subject, std::uint32_t, Moment) {
-      sockets_.Accept(subject.index);
+      EXPECT_TRUE(sockets_.Accept(subject.index));
       return Reactor::Found{};
     });
     reactor_.On(Tag::kConnection, [this](const Subject& subject, std::uint32_t, Moment) {
