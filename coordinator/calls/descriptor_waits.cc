@@ -57,7 +57,8 @@ void DescriptorWaits::AddMembers(const Task& task, int set, const Subject& subje
     if (!member || events == 0 || outside_.IsHidden(member.get(), task.reached)) continue;
     // What tells each time is told of once more by the next look.
     const bool tells_once = (entry.events & EPOLLET) != 0;
-    if (!Arm(member.get(), events | (tells_once ? std::uint32_t{EPOLLET} : 0U), subject, watched)) continue;
+    if (!Arm(member.get(), events | (tells_once ? std::uint32_t{EPOLLET} : 0U), subject, watched))
+      continue;
     if (tells_once && IsReady(member.get(), events)) watched.skips_in = reactor_.next_look();
     watched.members.push_back(std::move(member));
   }
