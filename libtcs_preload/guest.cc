@@ -1,6 +1,7 @@
 #include "libtcs_preload/guest.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <sys/mman.h>
 
 #include <utility>
@@ -113,7 +114,11 @@ void DieWithoutCoordinator(const char* what) {
   put(kPrefix);
   put(what);
   put(kSuffix);
-  for (;;) RawSyscall(SYS_exit_group, kNoCoordinatorExit);
+  // A trapped end fails where nobody is there to be told of it.
+  for (;;) {
+    RawSyscall(SYS_exit_group, kNoCoordinatorExit);
+    RawSyscall(SYS_kill, RawSyscall(SYS_getpid), SIGKILL);
+  }
 }
 
 }  // namespace tcs::preload

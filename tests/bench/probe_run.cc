@@ -22,7 +22,8 @@ std::vector<std::string> CommandFor(const Probe& probe) {
   const std::string program = Beside("tcs_bench_probe");
   switch (probe.world) {
     case World::kTcs:
-      return {Beside("tcsim"), "exec", "--", program, "tcs", probe.what, probe.steps};
+      return {Beside("tcsim"), "exec", "--rdtsc",  "host",     "--",
+              program,         "tcs",  probe.what, probe.steps};
     case World::kFaketime:
       return {"faketime", "2000-01-01 00:00:00", program, "faketime", probe.what, probe.steps};
     case World::kNative:
