@@ -42,8 +42,8 @@ int main(int argc, char** argv) {
     EXPECT(clock_nanosleep(CLOCK_MONOTONIC, 0, &wanted, &left) == EINTR, "clock_nanosleep");
     EXPECT(ToNs(left) > 0 && ToNs(left) <= 201 * kMs, "left: %lld ns", (long long)ToNs(left));
 
-    AlarmIn(100 * kMs);
     start = Now();
+    AlarmIn(100 * kMs);
     const unsigned unslept = sleep(5);
     EXPECT(unslept >= 4 && unslept <= 5, "sleep says %u s are left", unslept);
 
@@ -53,12 +53,12 @@ int main(int argc, char** argv) {
 
     // Where what is left cannot be told, the sleep says that.
     auto* const nowhere = reinterpret_cast<timespec*>(8);
-    AlarmIn(100 * kMs);
     start = Now();
+    AlarmIn(100 * kMs);
     EXPECT(nanosleep(&wanted, nowhere) == -1 && errno == EFAULT, "%s", strerror(errno));
     ExpectSoonAfter(start, 100 * kMs, "a sleep that cannot tell");
-    AlarmIn(100 * kMs);
     start = Now();
+    AlarmIn(100 * kMs);
     const long raw = syscall(SYS_clock_nanosleep, CLOCK_MONOTONIC, 0, &wanted, nowhere);
     EXPECT(raw == -1 && errno == EFAULT, "by the system call: %ld, %s", raw, strerror(errno));
     ExpectSoonAfter(start, 100 * kMs, "a system call that cannot tell");
