@@ -1,12 +1,11 @@
 #include "libtcs_preload/outside.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#include "libtcs_preload/descriptor_path.h"
 #include "libtcs_preload/exchange.h"
+#include "libtcs_preload/fd_info.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -37,24 +36,6 @@ bool IsAnythingHidden(GuestThread& thread) {
     if (from > now && from != shm::kOutsideRests) return true;
   }
   return false;
-}
-
-// Numbers in a line of /proc/self/fdinfo.
-const char* SkipTo(const char* text, const char* name) {
-  const char* at = strstr(text, name);
-  return at == nullptr ? nullptr : at + strlen(name);
-}
-
-std::uint64_t NumberAt(const char* text, unsigned base) {
-  while (*text == ' ' || *text == '\t') ++text;
-  std::uint64_t number = 0;
-  for (;; ++text) {
-    const unsigned digit = *text >= '0' && *text <= '9'   ? static_cast<unsigned>(*text - '0')
-                           : *text >= 'a' && *text <= 'f' ? static_cast<unsigned>(*text - 'a') + 10
-                                                          : base;
-    if (digit >= base) return number;
-    number = number * base + digit;
-  }
 }
 
 }  // namespace
@@ -112,34 +93,16 @@ HiddenMembers::HiddenMembers(GuestThread& thread, int epoll_fd) : epoll_fd_(epol
   if (IsAnythingHidden(thread)) Read(thread);
 }
 
-// "tfd:        5 events:       19 data:                5  pos:0 ino:1f sdev:8"
 void HiddenMembers::Read(GuestThread& thread) {
-  const DescriptorPath path("/proc/self/fdinfo/", epoll_fd_);
-  const long file = RawSyscall(SYS_openat, AT_FDCWD, Arg(path.text), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  char text[512];
-  std::size_t size = 0;
-  for (long got = 1; got > 0 && count_ < kMost;) {
-    got = RawSyscall(SYS_read, file, Arg(text + size), static_cast<long>(sizeof text - 1 - size));
-    if (got > 0) size += static_cast<std::size_t>(got);
-    text[size] = '\0';
-    char* line = text;
-    for (char* end = nullptr; (end = strchr(line, '\n')) != nullptr; line = end + 1) {
-      *end = '\0';
-      const char* fd = SkipTo(line, "tfd:");
-      const char* events = SkipTo(line, "events:");
-      const char* data = SkipTo(line, "data:");
-      if (fd == nullptr || events == nullptr || data == nullptr || count_ == kMost) continue;
-      const auto number = static_cast<int>(NumberAt(fd, 10));
-      if (!IsHidden(thread, OutsideOf(number))) continue;
-      members_[count_++] = {number, static_cast<std::uint32_t>(NumberAt(events, 16)),
-                            NumberAt(data, 16)};
-    }
-    size = strlen(line);
-    memmove(text, line, size);
-    if (size == sizeof text - 1) break;  // no such line
+  FdInfo info(epoll_fd_);
+  while (const char* line = count_ < kMost ? info.Next() : nullptr) {
+    std::uint64_t fd = 0, events = 0, data = 0;
+    const bool is_member = FindNumber(line, "tfd:", 10, &fd) &&
+                           FindNumber(line, "events:", 16, &events) &&
+                           FindNumber(line, "data:", 16, &data);
+    if (!is_member || !IsHidden(thread, OutsideOf(static_cast<int>(fd)))) continue;
+    members_[count_++] = {static_cast<int>(fd), static_cast<std::uint32_t>(events), data};
   }
-  RawSyscall(SYS_close, file);
 }
 
 // What tells of a member once only is set up anew.
@@ -167,10 +130,7 @@ long HiddenMembers::TakeOut(epoll_event* events, long found) const {
 bool IsDeviceOutside(const char* path) {
   constexpr char kFolder[] = "/dev/";
   constexpr std::size_t kFolderSize = sizeof kFolder - 1;
-  if (Current() == nullptr || !CanRead(path, kFolderSize) ||
-      memcmp(path, kFolder, kFolderSize) != 0) {
-    return false;
-  }
+  if (Current() == nullptr || strncmp(path, kFolder, kFolderSize) != 0) return false;
   for (const char* device : {"nvidia", "kfd", "dri/", "accel", "video", "apex_", "davinci"}) {
     if (strncmp(path + kFolderSize, device, strlen(device)) == 0) return true;
   }

@@ -61,7 +61,7 @@ class HiddenMembers {
   Member members_[kMost];
 };
 
-// A GPU, an accelerator, a camera: they compute and see by themselves. `path` need not be readable.
+// A GPU, an accelerator, a camera: they compute and see by themselves. `path` has just been opened.
 bool IsDeviceOutside(const char* path);
 void NoteOpens(int fd);
 
