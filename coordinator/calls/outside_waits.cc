@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "coordinator/os/open_files.h"
+#include "coordinator/os/socket_tables.h"
 #include "coordinator/tasks/borrowed.h"
 
 namespace tcs {
@@ -198,15 +199,9 @@ void OutsideWaits::Closes(int fd) {
   File* file = FileOf(fd);
   struct stat status;
   if (file == nullptr || (file->key & shm::kOutsideSocket) == 0 || fstat(fd, &status) != 0) return;
-  const std::string wanted = fmt::format("socket:[{}]", status.st_ino);
   int left = 0;
   for (const Process& process : run_.table.processes()) {
-    if (process.dead) continue;
-    std::error_code unreadable;
-    for (const auto& each :
-         std::filesystem::directory_iterator(fmt::format("/proc/{}/fd", process.pid), unreadable)) {
-      left += std::filesystem::read_symlink(each.path(), unreadable).string() == wanted ? 1 : 0;
-    }
+    if (!process.dead) left += DescriptorsOfSocket(process.pid, status.st_ino);
   }
   if (left > 1) return;
   Rest(*file);

@@ -4,11 +4,14 @@
 #include <ifaddrs.h>
 #include <netinet/in.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <optional>
 #include <sstream>
+#include <system_error>
 
 namespace tcs {
 
@@ -104,6 +107,17 @@ std::vector<UnixSocket> UnixSocketsOf(std::string_view table) {
     sockets.push_back(std::move(socket));
   });
   return sockets;
+}
+
+int DescriptorsOfSocket(pid_t pid, std::uint64_t inode) {
+  const std::string wanted = "socket:[" + std::to_string(inode) + "]";
+  std::error_code unreadable;
+  const std::filesystem::directory_iterator descriptors("/proc/" + std::to_string(pid) + "/fd",
+                                                        unreadable);
+  return static_cast<int>(
+      std::count_if(begin(descriptors), end(descriptors), [&](const auto& each) {
+        return std::filesystem::read_symlink(each.path(), unreadable).string() == wanted;
+      }));
 }
 
 std::vector<std::string> OwnAddresses() {

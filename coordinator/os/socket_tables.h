@@ -1,8 +1,9 @@
 // The kernel's tables of sockets: /proc/PID/net/tcp, tcp6, udp, udp6 and unix, as texts. Pure, but
-// for OwnAddresses.
+// for the last two.
 #pragma once
 
 #include <sys/socket.h>
+#include <sys/types.h>
 
 #include <cstdint>
 #include <string>
@@ -39,6 +40,10 @@ struct UnixSocket {
   std::string name;  // a path, or '@' and an abstract name; empty: none
 };
 std::vector<UnixSocket> UnixSocketsOf(std::string_view table);
+
+// How many descriptors of the socket with that inode the process has; 0 also where it cannot be
+// looked into.
+int DescriptorsOfSocket(pid_t pid, std::uint64_t inode);
 
 // The addresses of this computer's interfaces, as InternetAddress::host has them.
 std::vector<std::string> OwnAddresses();

@@ -9,10 +9,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <system_error>
 #include <vector>
 
 #include "coordinator/os/descendants.h"
@@ -43,25 +41,15 @@ std::vector<InternetSocket> SocketsOf(const Process& process, bool is_tcp) {
   return sockets;
 }
 
-bool HasSocket(pid_t pid, std::uint64_t inode) {
-  const std::string wanted = fmt::format("socket:[{}]", inode);
-  std::error_code unreadable;
-  const std::filesystem::directory_iterator descriptors(fmt::format("/proc/{}/fd", pid),
-                                                        unreadable);
-  return std::any_of(begin(descriptors), end(descriptors), [&](const auto& each) {
-    return std::filesystem::read_symlink(each.path(), unreadable).string() == wanted;
-  });
-}
-
 }  // namespace
 
 bool Peers::IsOfRun(std::uint64_t inode) {
   const auto [known, is_new] = is_of_run_.try_emplace(inode, false);
   if (!is_new) return known->second;
   const std::vector<pid_t> processes = DescendantsOf(getpid());
-  known->second = HasSocket(getpid(), inode) ||
+  known->second = DescriptorsOfSocket(getpid(), inode) > 0 ||
                   std::any_of(processes.begin(), processes.end(),
-                              [inode](pid_t pid) { return HasSocket(pid, inode); });
+                              [inode](pid_t pid) { return DescriptorsOfSocket(pid, inode) > 0; });
   return known->second;
 }
 
