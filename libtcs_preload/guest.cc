@@ -61,7 +61,8 @@ GuestThread* CurrentSlow() {
   g_process->mode = ProcessState::kAttached;
   SeedProcess(*t_thread.slot);
   if (t_thread.slot->patch_vdso != 0) PatchVdso();
-  if (t_thread.slot->leads_counter != 0) LeadCounterReads();
+  LeadReads(
+      {.counter = t_thread.slot->leads_counter != 0, .pauses = t_thread.slot->spin_gap_ns != 0});
   return &t_thread;
 }
 

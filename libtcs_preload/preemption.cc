@@ -5,6 +5,7 @@
 
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/spinning/pauses.h"
 #include "shm/clock_page.h"
 
 // What the kernel has a handler return to: rt_sigreturn, which takes no arguments.
@@ -56,6 +57,11 @@ void StopHere(int signal, siginfo_t* info, void* context) {
   }
   GuestThread& thread = *attached;
   if (IsShutDown()) return;
+  const auto& interrupted = *static_cast<const ucontext_t*>(context);
+  if (reinterpret_cast<std::uintptr_t>(info->si_value.sival_ptr) == shm::kAsksWhere) {
+    return NoteWhetherInLoop(thread,
+                             static_cast<std::uintptr_t>(interrupted.uc_mcontext.gregs[REG_RIP]));
+  }
   if (!IsForThisDispatch(*thread.slot, *info)) return;
   if (IsAtGate(thread)) {
     // With levels a signal of the program's has brought it here, whose handler is to run when the
@@ -63,7 +69,6 @@ void StopHere(int signal, siginfo_t* info, void* context) {
     if (g_header->gates_only == 0) AwaitDispatch(thread);
     return;
   }
-  const auto& interrupted = *static_cast<const ucontext_t*>(context);
   const auto* blocked = reinterpret_cast<const unsigned long*>(&interrupted.uc_sigmask);
   Exchange(thread, Request{.kind = shm::NotificationKind::kPreempted, .blocked = blocked});
 }

@@ -14,6 +14,7 @@
 #include "libtcs_preload/pthread_id.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
+#include "libtcs_preload/spinning/pauses.h"
 #include "libtcs_preload/user_memory.h"
 
 using namespace tcs::preload;
@@ -208,6 +209,6 @@ TCS_EXPORT int nice(int increment) noexcept {
 TCS_EXPORT int sched_yield(void) noexcept {
   const Entered t;
   if (t == nullptr) return static_cast<int>(RawSyscall(SYS_sched_yield));
-  Exchange(*t, Request{.kind = NotificationKind::kYield});
+  YieldCounted(*t, reinterpret_cast<std::uintptr_t>(__builtin_return_address(0)));
   return 0;
 }

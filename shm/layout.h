@@ -31,12 +31,13 @@
 #include "shm/ipc_times.h"
 #include "shm/postbox.h"
 #include "shm/receipts.h"
+#include "shm/spin_streak.h"
 #include "shm/work_counts.h"
 
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 26;
+inline constexpr std::uint32_t kVersion = 27;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -119,6 +120,8 @@ enum class NotificationKind : std::uint32_t {
                        // first, args[2]: WhereReads
   kChildUsage = 38,    // args[0]: pid of a child that has ended; reply[0]: what it and its own
                        // children were charged, ns; -1: not known
+  kSpins = 41,    // the thread looks at memory again and again; args[0]: 1 if at its clock, too. A
+                  // kYield has as args[1] whether it spins so, and as args[0] that it spins
   kOutside = 40,  // of a file by which the program may meet what is outside of the run; args: an
                   // OutsideEvent, and what it says (outside_files.h)
 };
@@ -128,8 +131,9 @@ enum class NotificationKind : std::uint32_t {
 // signals that the C library keeps for itself: programs can neither catch nor block it, and it is
 // in none of their sets. The library uses it for set*id() in programs of several threads, and
 // recognises its own signals by their sender. The signal carries the number of the dispatch that is
-// to end.
+// to end; or kAsksWhere: then the thread only looks whether it spins (SpinStreak::in_loop).
 inline constexpr int kPreemptionSignal = 33;
+inline constexpr std::uint64_t kAsksWhere = std::uint64_t{1} << 32;
 
 // Of ClockPage::counts_work, where only gates keep threads apart: the dispatch begins in a call
 // that the kernel carries out, so that the thread says once it is done (kCall).
@@ -363,6 +367,13 @@ struct alignas(64) ThreadSlot {
   // Written by the coordinator at the attach: 1: reads of the cycle counter are to be led to the
   // virtual one.
   std::uint32_t leads_counter;
+  // Likewise: what a thread that spins computes between two pauses at most, by its clock; 0: they
+  // are not to be counted (spin_streak.h).
+  std::uint32_t spin_gap_ns;
+  SpinStreak spin;  // written by the thread
+  // Written by the coordinator at each dispatch: a thread that spins ends its turn then, by its
+  // clock. kNeverNs where nobody else computes whom it could wait for.
+  std::int64_t spin_until_ns;
   alignas(64) Postbox postbox;
 };
 static_assert(sizeof(ThreadSlot) == 5376);
@@ -370,6 +381,7 @@ static_assert(offsetof(ThreadSlot, datagrams) == 1216);
 static_assert(offsetof(ThreadSlot, announces) == 3272);
 static_assert(offsetof(ThreadSlot, descriptors_changed) == 3276);
 static_assert(offsetof(ThreadSlot, leads_counter) == 3280);
+static_assert(offsetof(ThreadSlot, spin) == 3288);
 static_assert(offsetof(ThreadSlot, postbox) == 3328);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);

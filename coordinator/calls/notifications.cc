@@ -117,7 +117,11 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       parts_.spawns.Announced(task, note);
       break;
     case Kind::kYield:
+      if (note.args[0] != 0) parts_.spins.PassTime(task);
       looks_again = Yield(task);
+      break;
+    case Kind::kSpins:
+      parts_.spins.PassTime(task);
       break;
     case Kind::kPriority:
     case Kind::kPriorityGet:

@@ -13,6 +13,7 @@
 #include "coordinator/calls/scheduling_calls.h"
 #include "coordinator/calls/signal_calls.h"
 #include "coordinator/calls/spawns.h"
+#include "coordinator/calls/spin_waits.h"
 #include "coordinator/calls/timer_calls.h"
 #include "coordinator/processes/expulsion.h"
 #include "coordinator/processes/slot_check.h"
@@ -37,6 +38,7 @@ class Notifications {
     DdsGateway& dds;
     LocalSockets& local_sockets;
     OutsideWaits& outside;
+    SpinWaits& spins;
   };
 
   Notifications(RunState& run, Waker& waker, Parts parts)

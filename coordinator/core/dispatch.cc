@@ -71,7 +71,7 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   const ProgramClock& clock = task.process->clock;
   const ProgramTime now = clock.At(cpu.progress);
   MeteredThread& metered = task.metered;
-  if (metered.host_origin_ns < 0) metered.host_origin_ns = HostClockOf(task);
+  if (!metered.has_origin()) metered.host_origin_ns = HostClockOf(task);
   metered.pays_for_silence = task.process->client->pays_for_silence;
   ClockGrant& grant = task.grant;
   grant.base_time_ns = (now + task.debt).ns();
@@ -99,6 +99,8 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   page.last_shown_ns.store(std::max(last, now.ns()), std::memory_order_relaxed);
   page.last_shown_cpu_ns.store(task.charged.ns(), std::memory_order_relaxed);
   slot.core = cpu.core;
+  const VirtualTime end_of_spin = spins_.EndOfSpin(task);
+  slot.spin_until_ns = end_of_spin.IsNever() ? shm::kNeverNs : clock.At(end_of_spin).ns();
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];
   slot.wake_reason.store(task.reason);
@@ -424,6 +426,7 @@ void Engine::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until) 
     TimerSignals::SendTo(task);
     dds_.HandOver(task);
     WritePage(task, horizon, idle_until);
+    if (spins_.IsToBeAsked(task)) AskWhere(task.process->pid, task.tid);
   }
   if (task.trap_id != 0) task.brief_id = task.trap_id;
   if (task.is_brief) task.brief_until = HostNs(HostClockOf(task)) + AfterCall(task);
@@ -440,7 +443,9 @@ void Engine::NoteTurnBegins(Task& task) {
 
 void Engine::EndTurn(Task& task) {
   host_cpu_.active().TakeBack();
+  const VirtualTime start = task.cpu->progress;
   if (task.state != TaskState::kDead) Settle(task);
+  if (spins_.TurnEnds(task, start)) ahead_.StayHome(task.process);
   CallFiles::NoteTurn(task);
   undispatched_.TurnEnds(task);
   run_.turn.End();

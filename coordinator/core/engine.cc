@@ -57,6 +57,8 @@ VirtualTime Engine::HorizonFor(const Task& task, VirtualTime* idle_until) {
   const VirtualCpu& cpu = *task.cpu;
   const Robot& robot = *cpu.robot;
   *idle_until = {};
+  const VirtualTime seen_by_spinners = spins_.LimitOf(task);
+  const_cast<Task&>(task).metered.is_watched = !seen_by_spinners.IsNever();
   if (run_.IsCallback()) {
     return std::min({FurthestOf(cpu.progress),
                      robot.scheduler.HorizonWhileWorldStands(cpu.core, task.order),
@@ -64,7 +66,7 @@ VirtualTime Engine::HorizonFor(const Task& task, VirtualTime* idle_until) {
   }
   const ProcessTimers& timers = task.process->timers;
   TurnLimits limits{.start = cpu.progress,
-                    .apart = run_.root.Horizon(cpu.leaf),
+                    .apart = std::min(run_.root.Horizon(cpu.leaf), seen_by_spinners),
                     .cpu_time = {},
                     .next_launch = robot.next_launch,
                     .next_timer_look = timers.NextLook()};
@@ -181,6 +183,8 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     // It has computed that already.
   } else if (OnlyPays(task.state, start, task.debt, horizon)) {
     PayDebt(task, horizon - start);
+  } else if (spins_.IsBeforeItsLook(task)) {
+    PayDebt(task, std::min(task.debt, horizon - start));
   } else {
     Dispatch(task, horizon, idle_until);
     ahead_.SendIfItComputes(task);

@@ -310,6 +310,7 @@ class Engine {
   Deaths deaths_{run_, waker_, reactor_, host_cpu_, usage_};
   TrapListeners traps_{reactor_};
   RegistrationSockets sockets_{reactor_};
+  SpinWaits spins_{run_};
   Registration registration_{
       {run_, waker_, reactor_, host_cpu_, sockets_, bare_programs_, births_, deaths_, dds_},
       [this](Process& process, Moment moment) {
@@ -351,10 +352,11 @@ class Engine {
   FollowUps follow_ups_{run_, objects_, shared_events_, signals_, signal_wakes_, spawns_};
 
   // What they notify.
-  Notifications notifications_{run_,
-                               waker_,
-                               {expulsion_, descriptors_, unknown_children_, timers_, spawns_,
-                                scheduling_, signals_, objects_, dds_, local_sockets_, outside_}};
+  Notifications notifications_{
+      run_,
+      waker_,
+      {expulsion_, descriptors_, unknown_children_, timers_, spawns_, scheduling_, signals_,
+       objects_, dds_, local_sockets_, outside_, spins_}};
 
   // What users are told.
   DebuggerHold debugger_{run_};

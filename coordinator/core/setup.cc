@@ -189,7 +189,7 @@ std::string Engine::PrepareMemory() {
   run_.header->coordinator_pid = getpid();
   run_.header->counter_ticks_per_ns_q32 = CounterRate();
   run_.header->gates_only = run_.gates_only ? 1 : 0;
-  run_.header->preempts = run_.SendsToGates() ? 1 : 0;
+  run_.header->preempts = run_.SendsToGates() || SpinWaits::AsksThreads(run_) ? 1 : 0;
   run_.header->has_porters = run_.has_porters ? 1 : 0;
   run_.header->notes_activity = answers_.is_open() ? 1 : 0;
   run_.header->names_by_robot = run_.scenario.network.has_value() ? 1 : 0;

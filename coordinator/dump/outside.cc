@@ -50,6 +50,8 @@ const char* WordsFor(shm::NotificationKind kind) {
       return "to wait for room for its DDS messages";
     case Kind::kYield:
       return "to let others run";
+    case Kind::kSpins:
+      return "to see what others write to memory";
     case Kind::kKernelWait:
       return "for a call in which the kernel may hold it";
     case Kind::kCall:

@@ -99,7 +99,7 @@ VirtualDuration HostCpu::Uncharged(const HostThread& thread, VirtualDuration cha
                                    const Meter::CpuClock& clock) {
   const MeteredThread& metered = thread.metered;
   if (metered.is_ideal) return {};
-  const std::int64_t cpu_ns = metered.host_origin_ns < 0 ? -1 : clock();
+  const std::int64_t cpu_ns = metered.has_origin() ? clock() : -1;
   if (cpu_ns < 0) return {};
   return std::max(VirtualDuration(), metered.ChargeAt(cpu_ns) - charged);
 }

@@ -56,7 +56,8 @@ Meter::Found MeasuredMeter::Look(MeteredThread& thread, std::uint64_t tsc, Progr
                  static_cast<double>(tsc - thread.asked_tsc) / rate_.ticks_per_ns);
   CheckIfDue(thread, tsc, clock);
   const ProgramTime now = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
-  return IsAtHorizon(now, horizon) ? Found::kAtHorizon : Found::kGoesOn;
+  return IsAtHorizon(now, OwnTime(thread.page->base_time_ns), horizon) ? Found::kAtHorizon
+                                                                       : Found::kGoesOn;
 }
 
 // Had the timer come in time, a look at the TSC is all there is to do.
@@ -106,7 +107,7 @@ void MeasuredMeter::CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const C
 }
 
 void MeasuredMeter::End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
-  if (HasTakenTooMuch(*thread.page, tsc)) {
+  if (thread.is_watched || HasTakenTooMuch(*thread.page, tsc)) {
     Check(thread, tsc, clock);
   } else {
     CheckIfDue(thread, tsc, clock);

@@ -32,12 +32,15 @@ struct MeteredThread {
   shm::ClockPage* page = nullptr;
   double speed = 1.0;     // the host's nanoseconds per virtual one
   bool is_ideal = false;  // it is charged nothing (ideal_meter.h)
-  // What the thread's CPU clock said when its charge was 0, moved by what is not charged; -1: not
-  // known yet.
-  std::int64_t host_origin_ns = -1;
+  // What the thread's CPU clock said when its charge was 0, moved by what is not charged, and by
+  // what is without being computed.
+  static constexpr std::int64_t kNoOrigin = INT64_MIN;  // not known yet
+  std::int64_t host_origin_ns = kNoOrigin;
   std::int64_t page_origin_ns = 0;  // what its page says of that
   std::int64_t known_cpu_ns = -1;   // what it said last (shared_cpu_meter.h)
   HostDuration longest_run = HostDuration::Milliseconds(10);  // of late
+  // Others look at what it does in short steps: its CPU clock is asked after each turn.
+  bool is_watched = false;
   std::uint64_t unchecked_ticks = 0;  // of TSC run since its CPU clock was last asked
   std::uint64_t checked_tsc = 0;      // what its page said of that at its dispatch
   UncheckedRuns unchecked_runs;       // by the coordinator
@@ -54,6 +57,8 @@ struct MeteredThread {
   // has been found silent.
   int silent_looks = 0;
   bool is_silent = false;
+
+  bool has_origin() const { return host_origin_ns != kNoOrigin; }
 
   // Host time and virtual time are made of each other here only.
   HostDuration OnHost(VirtualDuration computed) const {

@@ -14,8 +14,10 @@
 
 namespace tcs {
 
-// A thread stopped this close before its horizon has reached it: the rest is credit.
+// A thread stopped this close before its horizon has reached it: the rest is credit. Of a short
+// turn it is a part, so that the thread does run.
 inline constexpr VirtualDuration kCredit = VirtualDuration::Microseconds(20);
+inline constexpr std::int64_t kCreditsInTurn = 4;
 // So much a thread computes before its CPU clock is asked what of it was stolen.
 inline constexpr HostDuration kCheckAfter = HostDuration::Microseconds(100);
 // Shown too early by what was stolen unnoticed, and stopped early: no more than both.
@@ -39,10 +41,11 @@ struct Settlement {
   VirtualDuration ours;  // counted, but neither time nor charge of the thread's
 };
 
-// Of two times on one clock.
+// Of a turn from `start` to `horizon`, times on one clock.
 template <class Time>
-constexpr bool IsAtHorizon(Time now, Time horizon) {
-  return now >= horizon - kCredit;
+constexpr bool IsAtHorizon(Time now, Time start, Time horizon) {
+  const VirtualDuration part = VirtualNs((horizon - start).ns() / kCreditsInTurn);
+  return now >= horizon - std::clamp(part, VirtualDuration(), kCredit);
 }
 
 constexpr Settlement SettleRun(const StoppedRun& run) {
@@ -56,7 +59,7 @@ constexpr Settlement SettleRun(const StoppedRun& run) {
   // What the clock has shown has happened, even where stolen time was found in it afterwards.
   result.progress =
       std::clamp(std::max(reached, run.shown), run.start, std::max(run.start, run.horizon));
-  if (run.is_preempted && IsAtHorizon(result.progress, run.horizon)) {
+  if (run.is_preempted && IsAtHorizon(result.progress, run.start, run.horizon)) {
     result.progress = std::max(result.progress, run.horizon);
   }
   result.debt = reached - result.progress;

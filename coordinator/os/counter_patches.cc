@@ -209,7 +209,7 @@ class Segment {
   bool Lead(const shm::Replacement& replacement, Code reads) {
     std::vector<std::uint8_t> bytes(kMostOfOne);
     shm::CodeWriter writer(bytes.data(), place_, bytes.size());
-    shm::WriteStandIn(writer, replacement, [&](shm::CodeWriter& code, Code read) {
+    shm::WriteStandIn(writer, replacement, {}, [&](shm::CodeWriter& code, Code read) {
       code.Bytes({0x48, 0x8d, 0x64, 0x24, 0x80});           // lea -128(%rsp), %rsp
       code.Leading({0xe8}, reads);                          // call
       code.Bytes({0x48, 0x8d, 0xa4, 0x24, 0x80, 0, 0, 0});  // lea 128(%rsp), %rsp

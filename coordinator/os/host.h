@@ -17,6 +17,7 @@
 #include "coordinator/os/own_computer.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
+#include "shm/layout.h"
 
 namespace tcs {
 
@@ -158,6 +159,8 @@ int WhyNoFixedLayout();
 // its last one: in another one the signal says nothing. It is there once it has notified, and may
 // never be.
 void SendToGate(pid_t pid, pid_t tid, std::uint64_t dispatch);
+// Has the thread look whether it spins, once it runs.
+inline void AskWhere(pid_t pid, pid_t tid) { SendToGate(pid, tid, shm::kAsksWhere); }
 
 struct SpawnRequest {
   std::vector<std::string> command;

@@ -10,7 +10,7 @@ namespace {
 // What the thread's own CPU clock says that it has used since it was first charged; 0 where it can
 // no longer be asked.
 std::int64_t HostCpuOf(Task& task) {
-  if (task.metered.host_origin_ns < 0) return 0;
+  if (!task.metered.has_origin()) return 0;
   const std::int64_t now = HostClockOf(task);
   return now < 0 ? 0 : now - task.metered.host_origin_ns;
 }
@@ -65,7 +65,7 @@ void UsageBook::Keep(Task& ended) const {
       .activations = ended.activations,
       .work = ended.work,
   };
-  if (ended.metered.host_origin_ns < 0) {  // it never ran under its clock
+  if (!ended.metered.has_origin()) {  // it never ran under its clock
     process.ended.Add(usage, 0, 0, 0);
     return;
   }

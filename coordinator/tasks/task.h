@@ -57,6 +57,16 @@ struct Birth {
   bool is_announced = false;  // the shim has made it, and tells of it next
 };
 
+// A thread's wait for others that it computes through.
+struct SpinWait {
+  VirtualTime since;
+  bool only_yields = false;    // it has yielded, and may look at memory
+  bool was_stopped = false;    // it span a moment before it was stopped
+  bool reads_clock = false;    // it looks at its clock, too
+  bool has_waited = false;     // for its next look, as others have acted
+  std::uint64_t has_seen = 0;  // of what threads of its robot have done, by Robot::acts
+};
+
 struct ClientSpec;
 struct Process;
 struct Robot;
@@ -119,9 +129,13 @@ struct Task : HostThread {
   // coordinator (beside_cpu.h); and how far that one goes.
   int short_turns = 0, beside_after = 3;
   VirtualTime beside_horizon;
-  bool died_beside = false;     // with its process, in the turn that it has there
-  HostDuration ran;             // in its last turn
-  bool spins = false;           // computes on and on on an ideal robot
+  bool died_beside = false;  // with its process, in the turn that it has there
+  HostDuration ran;          // in its last turn
+  bool spins = false;        // computes on and on on an ideal robot
+  // It waits for another core by looking at memory (calls/spin_waits.h); when it was last asked
+  // whether it does so without pausing.
+  std::optional<SpinWait> spin;
+  VirtualTime asked_at;
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
   std::vector<Birth> births;    // that it has begun, the earliest first
   bool in_vfork = false;        // it stands in the kernel until its child executes or ends
@@ -207,6 +221,7 @@ struct Process {
   bool stop_is_news = false, continue_is_news = false;
   std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
   bool pays_for_silence = false;  // a client: its threads compute for long without calls
+  VirtualTime stays_close_until;  // its threads' cores do to each other (calls/spin_waits.h)
   bool stays_home = false;        // its threads do not compute ahead (computing_ahead.h)
   bool counter_warned = false;    // a client: of what it, or a descendant, reads by rdtsc
   bool dds_warned = false;        // a client: of what it, or a descendant, sends
@@ -251,6 +266,8 @@ struct Robot {
   bool is_ideal = false;       // its threads are charged nothing
   bool is_ours = false;        // tcsim's own: no run goes on for its programs
   bool is_reached = false;     // nothing is local to it any more (calls/local_sockets.h)
+  std::uint64_t acts = 0;      // turns of its threads that did more than spin,
+  VirtualTime acted_until;     // and when the last ended that was over by itself
   bool is_disturbed = false;   // others than its own programs send it signals (core/turns_beside.h)
   RobotScheduler scheduler;
   VirtualTime next_launch = VirtualTime::Never();  // when the next client of its starts

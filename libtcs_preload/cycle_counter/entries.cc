@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "libtcs_preload/cycle_counter/virtual_counter.h"
+#include "libtcs_preload/spinning/pauses.h"
 
 // Functions that use general registers only are asked first; most reads end there. Those that may
 // wait for a turn use the low halves of vectors, too, as code for every x86-64 does.
@@ -48,6 +49,21 @@ __asm__(
     "movq 64(%rbp), %rdx\n\tmovl %eax, %eax\n\tmovq %rax, 64(%rbp)\n\tmovq %rdx, %rax\n\t"
     TCS_RESTORE
     ".size tcs_read_counter_and_processor, .-tcs_read_counter_and_processor\n\t"
+
+    ".p2align 4\n\t"
+    ".hidden tcs_pause\n\t.globl tcs_pause\n\t"
+    ".type tcs_pause, @function\n"
+    "tcs_pause:\n\tendbr64\n\tpushq %rax\n\tpushq %rdx\n\t" TCS_SAVE
+    "movq 88(%rbp), %rdi\n\t"  // where it goes on
+    "call tcs_pause_at_once\n\ttestl %eax, %eax\n\tjnz 1f\n\t"
+    "subq $256, %rsp\n\t" TCS_VECTORS(TCS_KEEP_VECTOR)
+    "movq 88(%rbp), %rdi\n\t"
+    "call tcs_pause_in_turn\n\t" TCS_VECTORS(TCS_GIVE_VECTOR)
+    "1:\n\tmovq %rbp, %rsp\n\t"
+    "popq %rax\n\taddb $0x7f, %al\n\tsahf\n\t"
+    "popq %rbp\n\tpopq %r11\n\tpopq %r10\n\tpopq %r9\n\tpopq %r8\n\tpopq %rdi\n\t"
+    "popq %rsi\n\tpopq %rcx\n\tpopq %rdx\n\tpopq %rax\n\tret\n\t"
+    ".size tcs_pause, .-tcs_pause\n\t"
 
     ".p2align 4\n\t"
     ".type tcs_counter_with_vectors, @function\n"

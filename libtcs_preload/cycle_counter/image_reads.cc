@@ -63,11 +63,16 @@ class Writable {
   const bool is_writable_;
 };
 
-void Replace(const shm::Replacements& found, CodeRange image, CodeRange code,
-             const Elf64_Phdr& segment, LeftReads* left, StandInMemory** memory) {
-  StandIns stand_ins(image, found.count());
+// What is not replaced, after all.
+void Leave(const shm::Replacement& one, LeftReads* left) {
+  if (!shm::IsPause(one.read, one.moved.end)) left->Add(one.read);
+}
+
+void Replace(const shm::Replacements& found, const shm::Sought& sought, CodeRange image,
+             CodeRange code, const Elf64_Phdr& segment, LeftReads* left, StandInMemory** memory) {
+  StandIns stand_ins(image, found.count(), sought);
   const auto leave = [&] {
-    for (std::size_t i = 0; i < found.count(); ++i) left->Add(found[i].read);
+    for (std::size_t i = 0; i < found.count(); ++i) Leave(found[i], left);
   };
   if (!stand_ins.is_there()) return leave();
   const Writable writable(code, segment);
@@ -80,27 +85,28 @@ void Replace(const shm::Replacements& found, CodeRange image, CodeRange code,
                                           [](Code at, const std::uint8_t* bytes, std::size_t size) {
                                             memcpy(const_cast<std::uint8_t*>(at), bytes, size);
                                           });
-    if (!leads) left->Add(found[i].read);
+    if (!leads) Leave(found[i], left);
   }
   stand_ins.Finish(memory);
 }
 
-void ReplaceIn(const shm::Image& image, const shm::UnwindTable& functions, CodeRange code,
-               const Elf64_Phdr& segment, LeftReads* left, StandInMemory** memory) {
+void ReplaceIn(const shm::Image& image, const shm::Sought& sought,
+               const shm::UnwindTable& functions, CodeRange code, const Elf64_Phdr& segment,
+               LeftReads* left, StandInMemory** memory) {
   const Room room;
   if (room.get() == nullptr) return;
-  shm::Replacements found(*room.get());
+  shm::Replacements found(*room.get(), sought);
   found.Plan(code, functions, [left](Code read) { left->Add(read); });
-  if (found.count() > 0) Replace(found, image.Whole(), code, segment, left, memory);
+  if (found.count() > 0) Replace(found, sought, image.Whole(), code, segment, left, memory);
 }
 
 }  // namespace
 
-StandInMemory* ReplaceReads(const shm::Image& image, LeftReads* left) {
+StandInMemory* ReplaceReads(const shm::Image& image, const shm::Sought& sought, LeftReads* left) {
   StandInMemory* memory = nullptr;
   const shm::UnwindTable functions = image.Functions();
   image.ForEachCode([&](CodeRange code, const Elf64_Phdr& segment) {
-    ReplaceIn(image, functions, code, segment, left, &memory);
+    ReplaceIn(image, sought, functions, code, segment, left, &memory);
   });
   return memory;
 }

@@ -1,4 +1,4 @@
-// The reads of the cycle counter in one image: found, and replaced.
+// The reads of the cycle counter, and the pauses, in one image: found, and replaced.
 #pragma once
 
 #include "libtcs_preload/cycle_counter/stand_ins.h"
@@ -8,7 +8,7 @@
 namespace tcs::preload {
 
 // No thread executes code of the image meanwhile, but for this one, elsewhere. Its segments must
-// not change. What stands in for its reads.
-StandInMemory* ReplaceReads(const shm::Image& image, LeftReads* left);
+// not change. What stands in for its reads. `left`: those of the counter that stay as they are.
+StandInMemory* ReplaceReads(const shm::Image& image, const shm::Sought& sought, LeftReads* left);
 
 }  // namespace tcs::preload

@@ -74,13 +74,15 @@ class Known {
 
 Known g_known;
 const r_debug* g_loader = nullptr;
+shm::Sought g_sought;
 
 void LookThrough(const r_debug& loader) {
   LeftReads left;
   {
     const ShimsOwnTime own_time;
     g_known.Update(loader, [&](const link_map& loaded) -> StandInMemory* {
-      return IsOthersCode(loaded) ? ReplaceReads(ImageOf(loader, loaded), &left) : nullptr;
+      return IsOthersCode(loaded) ? ReplaceReads(ImageOf(loader, loaded), g_sought, &left)
+                                  : nullptr;
     });
   }
   TellOfReads(left, WhereReads::kInFile);
@@ -117,8 +119,9 @@ bool HearOfChanges(const r_debug& loader) {
 
 }  // namespace
 
-void LeadCounterReads() {
-  if (g_loader != nullptr) return;
+void LeadReads(const shm::Sought& sought) {
+  if (g_loader != nullptr || (!sought.counter && !sought.pauses)) return;
+  g_sought = sought;
   g_loader = LoaderOfProgram();
   if (g_loader == nullptr) return;
   HearOfChanges(*g_loader);

@@ -1,10 +1,13 @@
-// Leads the program's reads of the processor's cycle counter to the virtual one.
+// Leads the program's reads of the processor's cycle counter to the virtual one, and its pauses to
+// where they are counted.
 #pragma once
+
+#include "shm/machine_code/counter_reads.h"
 
 namespace tcs::preload {
 
-// Of all that is loaded, and of what will be. Once per program, before it has threads; a child by
-// fork inherits it. The thread is attached.
-void LeadCounterReads();
+// What is sought of all that is loaded, and of what will be. Once per program, before it has
+// threads; a child by fork inherits it. The thread is attached.
+void LeadReads(const shm::Sought& sought);
 
 }  // namespace tcs::preload

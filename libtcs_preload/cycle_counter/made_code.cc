@@ -29,7 +29,7 @@ void LookThrough(Code start, std::size_t size, std::uint8_t* copy, LeftReads* le
         RawSyscall(SYS_process_vm_readv, RawSyscall(SYS_getpid), Arg(&to), 1, Arg(&from), 1, 0);
     if (read <= 0) return;
     const CodeRange code{copy, copy + read};
-    tcs::shm::ForEachLookingLikeARead(code, [&](Code at) {
+    tcs::shm::ForEachLookingLikeARead(code, {}, [&](Code at) {
       if (tcs::shm::TakesUpCounter(code, at)) left->Add(start + done + (at - copy));
     });
   }

@@ -4,6 +4,7 @@
 
 #include "libtcs_preload/cycle_counter/entries.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/spinning/pauses.h"
 
 namespace tcs::preload {
 
@@ -11,6 +12,7 @@ namespace tcs::preload {
 struct StandInMemory {
   void (*plain)() = tcs_read_counter;
   void (*with_processor)() = tcs_read_counter_and_processor;
+  void (*pause)() = tcs_pause;
   StandInMemory* next = nullptr;
   std::size_t size = 0;
 };
@@ -60,9 +62,21 @@ constexpr std::uint8_t kPassRedZone[] = {0x48, 0x8d, 0x64, 0x24, 0x80};
 constexpr std::uint8_t kBack[] = {0x48, 0x8d, 0xa4, 0x24, 0x80, 0, 0, 0};
 constexpr std::uint8_t kCallAtAddress[] = {0xff, 0x15};
 
+std::size_t EntryFor(Code read) {
+  switch (read[1]) {
+    case 0x90:
+      return offsetof(StandInMemory, pause);
+    case 0x31:
+      return offsetof(StandInMemory, plain);
+    default:
+      return offsetof(StandInMemory, with_processor);
+  }
+}
+
 }  // namespace
 
-StandIns::StandIns(CodeRange image, std::size_t reads) {
+StandIns::StandIns(CodeRange image, std::size_t reads, const shm::Sought& sought)
+    : sought_(sought) {
   size_ = (sizeof(StandInMemory) + reads * kMostOfOne + kPage - 1) / kPage * kPage;
   std::uint8_t* const at = MapNear(image, size_);
   if (at == nullptr) return;
@@ -75,11 +89,9 @@ Code StandIns::Add(const shm::Replacement& replacement) {
   std::uint8_t* const begin = reinterpret_cast<std::uint8_t*>(memory_);
   std::uint8_t* const place = begin + used_;
   CodeWriter writer(place, place, size_ - used_);
-  shm::WriteStandIn(writer, replacement, [&](CodeWriter& code, Code read) {
-    const std::size_t entry =
-        read[1] == 0x31 ? offsetof(StandInMemory, plain) : offsetof(StandInMemory, with_processor);
+  shm::WriteStandIn(writer, replacement, sought_, [&](CodeWriter& code, Code read) {
     code.Bytes(kPassRedZone);
-    code.Leading(kCallAtAddress, begin + entry);
+    code.Leading(kCallAtAddress, begin + EntryFor(read));
     code.Bytes(kBack);
   });
   if (!writer.is_sound()) return nullptr;

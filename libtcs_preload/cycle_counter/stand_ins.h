@@ -1,5 +1,6 @@
-// The code that reads of the cycle counter are led to: for each read of an image some bytes, near
-// enough to it for a jump, which call entries.h and go on behind the read.
+// The code that reads of the cycle counter, and pauses, are led to: for each of an image some
+// bytes, near enough to it for a jump, which call entries.h, or spinning/pauses.h, and go on behind
+// it.
 #pragma once
 
 #include "shm/machine_code/stand_in.h"
@@ -18,7 +19,7 @@ void Free(StandInMemory* first);
 class StandIns {
  public:
   // False from is_there() where the kernel gives no memory that is near enough.
-  StandIns(shm::CodeRange image, std::size_t reads);
+  StandIns(shm::CodeRange image, std::size_t reads, const shm::Sought& sought);
 
   bool is_there() const { return memory_ != nullptr; }
   // The code for this read; null: its instructions cannot be moved as far.
@@ -27,6 +28,7 @@ class StandIns {
   bool Finish(StandInMemory** list);
 
  private:
+  const shm::Sought sought_;
   StandInMemory* memory_ = nullptr;
   std::size_t size_ = 0, used_ = 0;
 };

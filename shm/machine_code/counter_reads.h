@@ -1,5 +1,7 @@
 // Reads of the processor's cycle counter (rdtsc, rdtscp) in a program's code, and how each of them
-// can be replaced by a jump of five bytes to a place that reads another counter instead.
+// can be replaced by a jump of five bytes to a place that reads another counter instead. `pause`,
+// which programs execute while they look at memory again and again, is replaced in the same way
+// where it is sought; "a read" stands for either here.
 //
 // Two ways are tried. Instructions around the read, and it with them, go to that other place, if a
 // jump's bytes hold whole ones into which nothing leads. Or a jump of two bytes leads into what
@@ -24,10 +26,25 @@ inline std::size_t CounterReadSize(Code at, Code end) {
   return 0;
 }
 
+inline bool IsPause(Code at, Code end) { return end - at >= 2 && at[0] == 0xf3 && at[1] == 0x90; }
+
+// What is to be replaced.
+struct Sought {
+  bool counter = true;  // reads of the counter
+  bool pauses = false;
+
+  // How long one at `at` is; 0: there is none.
+  std::size_t SizeAt(Code at, Code end) const {
+    if (pauses && IsPause(at, end)) return 2;
+    return counter ? CounterReadSize(at, end) : 0;
+  }
+};
+
 // True where what follows the read puts the two halves of the counter together, as compilers and
 // people write it: there the bytes are the instruction, whatever function they are in.
 inline bool TakesUpCounter(CodeRange code, Code read) {
   constexpr std::uint8_t kUpperHalf[] = {0x48, 0xc1, 0xe2, 0x20};  // shl $32, %rdx
+  if (CounterReadSize(read, code.end) == 0) return false;
   Code at = read + CounterReadSize(read, code.end);
   for (int i = 0; i < 4 && code.Contains(at); ++i) {
     const Instruction one = Decode(at, code.end);
@@ -40,19 +57,24 @@ inline bool TakesUpCounter(CodeRange code, Code read) {
 
 // Calls `found` with each place whose bytes are those of a read, instructions or not, in order.
 template <class Found>
-void ForEachLookingLikeARead(CodeRange code, const Found& found) {
+void ForEachLookingLikeARead(CodeRange code, const Sought& sought, const Found& found) {
   const auto look = [&](Code at) {
-    if (CounterReadSize(at, code.end) != 0) found(at);
+    if (sought.SizeAt(at, code.end) != 0) found(at);
   };
   Code at = code.begin;
   const __m128i first = _mm_set1_epi8(0x0f), second = _mm_set1_epi8(0x31),
                 second_of_p = _mm_set1_epi8(0x01);
+  const __m128i first_of_pause = _mm_set1_epi8(sought.pauses ? static_cast<char>(0xf3) : 0x0f),
+                second_of_pause = _mm_set1_epi8(sought.pauses ? static_cast<char>(0x90) : 0x31);
   for (; code.end - at >= 17; at += 16) {
     const __m128i these = _mm_loadu_si128(reinterpret_cast<const __m128i*>(at));
     const __m128i next = _mm_loadu_si128(reinterpret_cast<const __m128i*>(at + 1));
     const __m128i is_second =
         _mm_or_si128(_mm_cmpeq_epi8(next, second), _mm_cmpeq_epi8(next, second_of_p));
-    int hits = _mm_movemask_epi8(_mm_and_si128(_mm_cmpeq_epi8(these, first), is_second));
+    const __m128i is_pause =
+        _mm_and_si128(_mm_cmpeq_epi8(these, first_of_pause), _mm_cmpeq_epi8(next, second_of_pause));
+    int hits = _mm_movemask_epi8(
+        _mm_or_si128(_mm_and_si128(_mm_cmpeq_epi8(these, first), is_second), is_pause));
     for (; hits != 0; hits &= hits - 1) look(at + __builtin_ctz(static_cast<unsigned>(hits)));
   }
   for (; at < code.end; ++at) look(at);
@@ -117,6 +139,13 @@ inline bool IsWithinAnother(CodeRange function, Code at) {
   return true;
 }
 
+// What compilers put where nothing is executed.
+inline bool IsFiller(Code at, const Instruction& one) {
+  return one.size != 0 &&
+         (one.opcode == 0x90 || one.opcode == 0xcc || (one.opcode == 0x1f && one.size > 2)) &&
+         !IsPause(at, at + one.size);
+}
+
 // The instructions around a read, in a function that has been decoded from its begin to its end.
 class Neighbourhood {
  public:
@@ -151,9 +180,14 @@ class Neighbourhood {
   CodeRange From(int before) const {
     if (before > before_) return {};
     const int read = kBefore, first = read - before;
+    bool goes_on = true;
     for (int i = first; i <= read + after_; ++i) {
       const bool is_last = i >= read && at_[i] + what_[i].size >= at_[first] + kJumpSize;
-      if (i != read && !CanMove(i, is_last)) return {};
+      if (!goes_on && !IsFiller(at_[i], what_[i])) return {};
+      // What follows a jump is not executed if nothing leads there.
+      const bool may_jump = is_last || (i > read && goes_on);
+      if (i != read && !CanMove(i, may_jump)) return {};
+      goes_on &= what_[i].flow == Flow::kNext || what_[i].flow == Flow::kBranch;
       if (!is_last) continue;
       // Where a table of targets may lead is not known. Between a read and what takes up its
       // result it leads to no place.
@@ -184,9 +218,9 @@ class Neighbourhood {
     before_ += before_ < kBefore ? 1 : 0;
   }
 
-  bool CanMove(int i, bool is_last) const {
+  bool CanMove(int i, bool may_jump) const {
     const Instruction& one = what_[i];
-    return one.is_movable && (is_last || one.flow == Flow::kNext || one.flow == Flow::kBranch);
+    return one.is_movable && (may_jump || one.flow == Flow::kNext || one.flow == Flow::kBranch);
   }
 
   const CodeRange function_;
@@ -206,9 +240,7 @@ inline CodeRange PaddingIn(CodeRange gap) {
   Code at = gap.begin;
   while (at < end) {
     const Instruction one = Decode(at, end);
-    const bool is_filler = one.size != 0 && (one.opcode == 0x90 || one.opcode == 0xcc ||
-                                             (one.opcode == 0x1f && one.size > 2));
-    if (!is_filler) break;
+    if (!IsFiller(at, one)) break;
     at += one.size;
   }
   return {gap.begin, at};

@@ -1,4 +1,4 @@
-// How all reads of the cycle counter in some code are replaced.
+// How all reads of the cycle counter, and pauses, in some code are replaced.
 //
 // Pure; async-signal-safe; memory is given by the caller.
 #pragma once
@@ -57,7 +57,7 @@ class ReplacementPlan {
       const Code room = machine_code::RoomFor(padding, read, padding_until_);
       if (room == nullptr) continue;
       padding_until_ = room + kJumpSize;
-      taken_until_ = read + CounterReadSize(read, function.end);
+      taken_until_ = read + (IsPause(read, function.end) ? 2 : CounterReadSize(read, function.end));
       *replacement = {read, {read, taken_until_}, room};
       return NotReplaced::kNo;
     }
@@ -82,22 +82,25 @@ struct PlanRoom {
 // All replacements in some code, which nothing elsewhere in it jumps into.
 class Replacements {
  public:
-  explicit Replacements(PlanRoom& room) : room_(room) {}
+  explicit Replacements(PlanRoom& room, const Sought& sought = {}) : room_(room), sought_(sought) {}
 
   std::size_t count() const { return count_; }
   const Replacement& operator[](std::size_t i) const { return room_.replacements[i]; }
 
-  // Calls `left` with each read that cannot be replaced.
+  // Calls `left` with each read of the counter that cannot be replaced.
   template <class Left>
   void Plan(CodeRange code, const UnwindTable& functions, const Left& left) {
     constexpr int kMostPlans = 8;
     read_count_ = target_count_ = 0;
-    ForEachLookingLikeARead(code, [&](Code at) {
+    const auto leave = [&](Code at) {
+      if (CounterReadSize(at, code.end) != 0) left(at);
+    };
+    ForEachLookingLikeARead(code, sought_, [&](Code at) {
       const CodeRange function = functions.FunctionAt(at);
       const bool may_be = function.IsEmpty() ? TakesUpCounter(code, at)
                                              : !machine_code::IsWithinAnother(function, at);
       if (!may_be) return;
-      if (read_count_ == PlanRoom::kMostReads) return left(at);
+      if (read_count_ == PlanRoom::kMostReads) return leave(at);
       room_.reads[read_count_++] = at;
     });
     bool is_entered = true;
@@ -105,8 +108,8 @@ class Replacements {
       PlanOnce(code, functions);
       is_entered = count_ > 0 && IsEntered(code);
     }
-    for (std::size_t i = 0; i < left_count_; ++i) left(room_.left[i]);
-    for (std::size_t i = 0; is_entered && i < count_; ++i) left(room_.replacements[i].read);
+    for (std::size_t i = 0; i < left_count_; ++i) leave(room_.left[i]);
+    for (std::size_t i = 0; is_entered && i < count_; ++i) leave(room_.replacements[i].read);
     if (is_entered) count_ = 0;
   }
 
@@ -154,6 +157,7 @@ class Replacements {
   }
 
   PlanRoom& room_;
+  const Sought sought_;
   std::size_t read_count_ = 0, count_ = 0, target_count_ = 0, left_count_ = 0;
 };
 

@@ -74,12 +74,13 @@ class CodeWriter {
 
 // Writes it, with what `write_read(writer, at)` writes in place of a read at `at`.
 template <class WriteRead>
-void WriteStandIn(CodeWriter& writer, const Replacement& replacement, const WriteRead& write_read) {
+void WriteStandIn(CodeWriter& writer, const Replacement& replacement, const Sought& sought,
+                  const WriteRead& write_read) {
   const CodeRange& moved = replacement.moved;
   bool goes_on = true;
-  for (Code at = moved.begin; at < moved.end;) {
+  for (Code at = moved.begin; at < moved.end && goes_on;) {
     const Instruction one = Decode(at, moved.end);
-    if (one.size == CounterReadSize(at, moved.end)) {
+    if (one.size == sought.SizeAt(at, moved.end)) {
       write_read(writer, at);
     } else {
       writer.Move(one, at);

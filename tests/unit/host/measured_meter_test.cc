@@ -14,7 +14,7 @@ class MeasuredMeterTest : public testing::Test {
 
   // As the coordinator does it.
   void Dispatch(std::uint64_t tsc, bool from_gate = false) {
-    if (thread_.host_origin_ns < 0) thread_.host_origin_ns = host_cpu_ns_;
+    if (!thread_.has_origin()) thread_.host_origin_ns = host_cpu_ns_;
     grant_.base_time_ns = kStart;
     grant_.base_cpu_ns = charged_ns_;
     grant_.horizon_ns = kStart + 20 * kMs;

@@ -14,7 +14,7 @@ struct Function {
   CodeRange range() const { return {bytes.data(), bytes.data() + bytes.size()}; }
   Code First() const {
     Code first = nullptr;
-    ForEachLookingLikeARead(range(), [&](Code at) { first = first == nullptr ? at : first; });
+    ForEachLookingLikeARead(range(), {}, [&](Code at) { first = first == nullptr ? at : first; });
     return first;
   }
   NotReplaced Plan(Replacement* replacement, std::vector<Code> targets = {}) const {
@@ -40,7 +40,7 @@ TEST(CounterReads, AreFoundByTheirBytesWhereverTheyStand) {
     bytes[place + 1] = 0x31;
     const Function function{bytes};
     int count = 0;
-    ForEachLookingLikeARead(function.range(), [&](Code) { ++count; });
+    ForEachLookingLikeARead(function.range(), {}, [&](Code) { ++count; });
     EXPECT_EQ(count, 1) << place;
     EXPECT_EQ(function.First() - function.bytes.data(), static_cast<long>(place));
   }
@@ -83,6 +83,32 @@ TEST(CounterReads, AreLeftWhereNotAllOfTheFunctionIsCode) {
             NotReplaced::kCodeIsUnknown);
   EXPECT_EQ((Function{{0x0f, 0x31, 0x48, 0xc1, 0xe2, 0x20, 0xc3, 0xe8}}.Plan(&one)),
             NotReplaced::kCodeIsUnknown);
+}
+
+TEST(CounterReads, GoWithAJumpAndWhatFillsTheRoomBehindIt) {
+  // rdtsc; jmp 0; nopw 0(%rax,%rax); ret
+  const Function loop{{0x0f, 0x31, 0xeb, 0xfc, 0x66, 0x0f, 0x1f, 0x44, 0, 0, 0xc3}};
+  EXPECT_EQ(loop.Moved(), (Range{0, 10}));
+  EXPECT_EQ(loop.Moved({loop.bytes.data() + 4}), kNone);
+  // What may be executed does not: rdtsc; jmp 0; inc %eax; ret
+  EXPECT_EQ((Function{{0x0f, 0x31, 0xeb, 0xfc, 0xff, 0xc0, 0xc3}}.Moved()), kNone);
+}
+
+TEST(CounterReads, PausesAreFoundWhereTheyAreSought) {
+  for (std::size_t place = 0; place < 70; ++place) {
+    std::vector<std::uint8_t> bytes(72, 0xcc);
+    bytes[place] = 0xf3;
+    bytes[place + 1] = 0x90;
+    const Function function{bytes};
+    int count = 0;
+    ForEachLookingLikeARead(function.range(), {}, [&](Code) { ++count; });
+    EXPECT_EQ(count, 0);
+    ForEachLookingLikeARead(function.range(), {.pauses = true}, [&](Code at) {
+      ++count;
+      EXPECT_EQ(at, function.bytes.data() + place);
+    });
+    EXPECT_EQ(count, 1) << place;
+  }
 }
 
 TEST(CounterReads, HeedATableOfTargetsThatIsNotKnown) {

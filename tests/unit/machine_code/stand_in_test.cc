@@ -39,13 +39,13 @@ long Replaced(const std::vector<std::uint8_t>& bytes, std::size_t function_size,
   memcpy(pages.function(), bytes.data(), bytes.size());
   const CodeRange function{pages.function(), pages.function() + function_size};
   Code read = nullptr;
-  ForEachLookingLikeARead(function, [&](Code at) { read = read == nullptr ? at : read; });
+  ForEachLookingLikeARead(function, {}, [&](Code at) { read = read == nullptr ? at : read; });
   const UnwindTable none;
   Replacement replacement;
   ReplacementPlan plan(function, none);
   if (plan.NextIn(function, read, nullptr, 0, &replacement) != NotReplaced::kNo) return -1;
   CodeWriter writer(pages.stand_ins(), pages.stand_ins(), kPage);
-  WriteStandIn(writer, replacement, [](CodeWriter& code, Code) {
+  WriteStandIn(writer, replacement, {}, [](CodeWriter& code, Code) {
     code.Bytes({0xb8, 7, 0, 0, 0, 0xba, 9, 0, 0, 0});
   });
   EXPECT_TRUE(writer.is_sound());

@@ -12,7 +12,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 26u);
+  EXPECT_EQ(kVersion, 27u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 5376u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -45,6 +45,9 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, announces), 3272u);
   EXPECT_EQ(offsetof(ThreadSlot, descriptors_changed), 3276u);
   EXPECT_EQ(offsetof(ThreadSlot, leads_counter), 3280u);
+  EXPECT_EQ(offsetof(ThreadSlot, spin_gap_ns), 3284u);
+  EXPECT_EQ(offsetof(ThreadSlot, spin), 3288u);
+  EXPECT_EQ(offsetof(ThreadSlot, spin_until_ns), 3320u);
   EXPECT_EQ(offsetof(ThreadSlot, postbox), 3328u);
 }
 

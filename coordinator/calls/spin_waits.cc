@@ -1,0 +1,183 @@
+#include "coordinator/calls/spin_waits.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/tasks/cpu_clock.h"
+#include "shm/spin_streak.h"
+
+namespace tcs {
+
+namespace {
+
+// A look at memory takes less, on a host as fast as the robot, and what a thread does once it has
+// seen what it waits for mostly takes more. Under set costs it may read its clock, too.
+constexpr std::int64_t kGapNs = 500;
+// It takes the host up to so long to stop a thread, of which it is charged some.
+constexpr std::int64_t kStopNs = 20'000;
+
+// Calls `found(cpu, task)` with what each other core of the thread's robot does next.
+template <class Found>
+void ForEachBeside(const RunState& run, const Task& task, const Found& found) {
+  Robot& robot = *task.process->robot;
+  for (const VirtualCpu* cpu : robot.cpus) {
+    if (cpu == task.cpu) continue;
+    const RobotScheduler::Turn& turn = robot.scheduler.Next(cpu->core);
+    if (turn.thread == RobotScheduler::kNobody || turn.start > cpu->progress) continue;
+    const Task& other = run.table.At(turn.thread);
+    if (other.state == TaskState::kReady) found(*cpu, other);
+  }
+}
+
+}  // namespace
+
+std::uint32_t SpinWaits::GapFor(const Process& process) const {
+  const Robot& robot = *process.robot;
+  if (run_.IsCallback() || robot.is_ideal) return 0;
+  if (run_.IsFixed()) {
+    return static_cast<std::uint32_t>(kGapNs + process.call_cost.ns());
+  }
+  if (robot.cpus.size() == 1) return 0;
+  return static_cast<std::uint32_t>(static_cast<double>(kGapNs) / std::min(1.0, robot.speed));
+}
+
+// Under set costs nobody comes to a horizon by computing, and where a thread is would be the
+// host's.
+bool SpinWaits::AsksThreads(const RunState& run) {
+  return !run.IsFixed() && !run.IsCallback() &&
+         std::ranges::any_of(run.scenario.robots,
+                             [](const RobotSpec& robot) { return robot.cores > 1; });
+}
+
+bool SpinWaits::IsToBeAsked(Task& task) const {
+  if (task.used_up == 0 || task.parked || task.is_brief || !task.can_be_stopped || task.executes ||
+      run_.IsFixed() || run_.IsCallback() || task.process->robot->cpus.size() == 1 ||
+      task.process->robot->is_ideal || SlotOf(task).open_calls.load() != 0 ||
+      task.reached < task.asked_at + kAskEvery || LeastThatActs(task).IsNever()) {
+    return false;
+  }
+  task.asked_at = task.reached;
+  return true;
+}
+
+bool SpinWaits::TurnEnds(Task& task, VirtualTime start) const {
+  if (task.slot < 0 || task.state == TaskState::kDead || task.process->robot->cpus.size() == 1) {
+    return false;
+  }
+  shm::ThreadSlot& slot = SlotOf(task);
+  Robot& robot = *task.process->robot;
+  const bool in_loop = std::exchange(slot.spin.in_loop, std::uint8_t{0}) != 0;
+  if (in_loop) task.process->stays_close_until = task.reached + kClose;
+  const std::optional<SpinWait> before = std::exchange(task.spin, std::nullopt);
+  // Who yields may look at memory again, too.
+  const bool yields = run_.turn.notified && slot.note.kind == shm::NotificationKind::kYield;
+  const bool stopped = !run_.turn.HasSpoken() ||
+                       (run_.turn.notified && slot.note.kind == shm::NotificationKind::kHorizon);
+  const std::int64_t gap_ns = slot.spin_gap_ns + (run_.turn.HasSpoken() ? 0 : kStopNs);
+  const bool is_streak =
+      shm::IsSpinning(slot.spin, OwnNow(task).ns(), gap_ns, stopped ? 1 : shm::SpinStreak::kSpins);
+  const bool spins = slot.spin_gap_ns != 0 && (yields || is_streak);
+  const auto act = [&] {
+    ++robot.acts;
+    // If it was stopped, others may have waited for what it did at any time until then.
+    const VirtualDuration debt = std::max(VirtualDuration(), task.debt);
+    const VirtualTime acted =
+        run_.turn.HasSpoken() ? task.reached : start + (task.reached + debt - start) / 2;
+    robot.acted_until = std::max(robot.acted_until, acted);
+  };
+  if (!spins) {
+    act();
+    return in_loop;
+  }
+  const VirtualTime since = task.process->clock.RobotTimeOf(OwnTime(slot.spin.begun_ns));
+  SpinWait& spin = task.spin.emplace();
+  spin.since = std::min(since, task.reached);
+  spin.only_yields = !is_streak;
+  spin.was_stopped = stopped;
+  spin.reads_clock = slot.spin.reads_clock != 0;
+  // It may have acted before it has begun.
+  if (!before.has_value() || before->since != spin.since) act();
+  spin.has_seen = robot.acts;
+  return !before.has_value();
+}
+
+VirtualDuration SpinWaits::StepOf(const Task& task) {
+  if (!task.spin.has_value()) return kLeastStep;
+  if (task.spin->only_yields) return kMostStep;
+  if (task.spin->reads_clock) return kLeastStep;
+  return std::clamp((task.reached - task.spin->since) / 4, kLeastStep, kMostStep);
+}
+
+VirtualTime SpinWaits::LeastThatActs(const Task& task) const {
+  VirtualTime least = VirtualTime::Never();
+  ForEachBeside(run_, task, [&](const VirtualCpu& cpu, const Task& other) {
+    const bool acts = !other.spin.has_value() || other.spin->has_seen != task.process->robot->acts;
+    if (acts) least = std::min(least, cpu.progress);
+  });
+  return least;
+}
+
+// Time that it has not computed.
+bool SpinWaits::Passes(const Task& task) {
+  return task.spin.has_value() && !task.spin->only_yields && !task.spin->was_stopped &&
+         !task.spin->reads_clock && task.reached - task.spin->since <= kLong;
+}
+
+void SpinWaits::Pass(Task& task, VirtualDuration duration) {
+  task.charged += duration;
+  task.debt += duration;
+  task.cpu->busy += duration;
+  // What its way to the gate has taken is part of that.
+  if (const std::int64_t cpu_ns = HostClockOf(task); cpu_ns >= 0) {
+    task.metered.host_origin_ns = cpu_ns - task.metered.OnHost(task.charged).ns();
+  }
+}
+
+void SpinWaits::PassTime(Task& task) const {
+  if (!Passes(task)) return;
+  const VirtualTime least = LeastThatActs(task);
+  if (least.IsNever()) return;
+  // What the others have done by now it has seen.
+  const VirtualDuration seen = std::max(VirtualDuration(), least - task.reached);
+  Pass(task, seen + StepOf(task) / 2);
+}
+
+bool SpinWaits::IsBeforeItsLook(Task& task) const {
+  const bool looks_now = Passes(task) || (task.spin.has_value() && task.spin->only_yields);
+  if (!looks_now || !task.parked) return false;
+  const VirtualTime looks = task.cpu->progress + std::max(VirtualDuration(), task.debt);
+  const VirtualTime acted = task.process->robot->acted_until;
+  // Others that look, too, may act again and again.
+  if (acted > looks && !std::exchange(task.spin->has_waited, true)) Pass(task, acted - looks);
+  return task.debt > VirtualDuration();
+}
+
+VirtualTime SpinWaits::LimitOf(const Task& task) const {
+  VirtualTime limit = VirtualTime::Never();
+  if (task.process->robot->cpus.size() == 1) return limit;
+  const bool is_close = task.process->stays_close_until > task.cpu->progress;
+  ForEachBeside(run_, task, [&](const VirtualCpu& cpu, const Task& other) {
+    if (is_close && other.process == task.process) {
+      const VirtualTime close = std::max(cpu.progress, task.cpu->progress) + kMostStep;
+      limit = std::min(limit, close);
+    }
+    if (!other.spin.has_value()) return;
+    const VirtualDuration step = StepOf(other);
+    const VirtualTime looks =
+        cpu.progress + std::max(VirtualDuration(), other.debt) + (Passes(other) ? step / 2 : step);
+    limit = std::min(limit, std::max(looks, task.cpu->progress + kLeastStep));
+  });
+  return limit;
+}
+
+VirtualTime SpinWaits::EndOfSpin(const Task& task) const {
+  if (task.process->robot->cpus.size() == 1) return VirtualTime::Never();
+  const VirtualTime least = LeastThatActs(task);
+  if (least.IsNever()) return least;
+  const VirtualTime start = task.cpu->progress;
+  const bool computes =
+      task.spin.has_value() && (task.spin->reads_clock || task.reached - task.spin->since > kLong);
+  return computes ? std::max(start, least) + StepOf(task) : start;
+}
+
+}  // namespace tcs
