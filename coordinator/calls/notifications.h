@@ -13,12 +13,12 @@
 #include "coordinator/calls/scheduling_calls.h"
 #include "coordinator/calls/signal_calls.h"
 #include "coordinator/calls/spawns.h"
-#include "coordinator/calls/spin_waits.h"
 #include "coordinator/calls/timer_calls.h"
 #include "coordinator/processes/expulsion.h"
 #include "coordinator/processes/slot_check.h"
 #include "coordinator/processes/unknown_children.h"
 #include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/spin_waits.h"
 #include "coordinator/tasks/waker.h"
 #include "shm/layout.h"
 

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/calls/spin_waits.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_file_limit.h"
 #include "coordinator/processes/attach_exchange.h"
 #include "coordinator/tasks/cpu_clock.h"
+#include "coordinator/tasks/spin_waits.h"
 
 namespace tcs {
 

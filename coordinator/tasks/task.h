@@ -61,6 +61,7 @@ struct Birth {
 struct SpinWait {
   VirtualTime since;
   bool only_yields = false;    // it has yielded, and may look at memory
+  bool is_first = false;       // of its looks in a row
   bool was_stopped = false;    // it span a moment before it was stopped
   bool reads_clock = false;    // it looks at its clock, too
   bool has_waited = false;     // for its next look, as others have acted
@@ -132,7 +133,7 @@ struct Task : HostThread {
   bool died_beside = false;  // with its process, in the turn that it has there
   HostDuration ran;          // in its last turn
   bool spins = false;        // computes on and on on an ideal robot
-  // It waits for another core by looking at memory (calls/spin_waits.h); when it was last asked
+  // It waits for another core by looking at memory (tasks/spin_waits.h); when it was last asked
   // whether it does so without pausing.
   std::optional<SpinWait> spin;
   VirtualTime asked_at;
@@ -221,7 +222,8 @@ struct Process {
   bool stop_is_news = false, continue_is_news = false;
   std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
   bool pays_for_silence = false;  // a client: its threads compute for long without calls
-  VirtualTime stays_close_until;  // its threads' cores do to each other (calls/spin_waits.h)
+  VirtualTime acted_until;        // when its threads last did more than spin, as far as it is known
+  VirtualTime stays_close_until;  // its threads' cores do to each other (tasks/spin_waits.h)
   bool stays_home = false;        // its threads do not compute ahead (computing_ahead.h)
   bool counter_warned = false;    // a client: of what it, or a descendant, reads by rdtsc
   bool dds_warned = false;        // a client: of what it, or a descendant, sends
@@ -266,8 +268,7 @@ struct Robot {
   bool is_ideal = false;       // its threads are charged nothing
   bool is_ours = false;        // tcsim's own: no run goes on for its programs
   bool is_reached = false;     // nothing is local to it any more (calls/local_sockets.h)
-  std::uint64_t acts = 0;      // turns of its threads that did more than spin,
-  VirtualTime acted_until;     // and when the last ended that was over by itself
+  std::uint64_t acts = 0;      // turns of its threads that did more than spin
   bool is_disturbed = false;   // others than its own programs send it signals (core/turns_beside.h)
   RobotScheduler scheduler;
   VirtualTime next_launch = VirtualTime::Never();  // when the next client of its starts

@@ -14,9 +14,12 @@ std::int64_t ShownBy(const shm::ThreadSlot& slot) {
   return slot.clock.last_shown_ns.load(std::memory_order_relaxed);
 }
 
-bool Spins(shm::ThreadSlot& slot, std::uintptr_t site, std::int64_t now_ns, std::int64_t shown_ns) {
-  return shm::CountPause(slot.spin, static_cast<std::uint32_t>(site), now_ns, shown_ns,
-                         slot.spin_gap_ns);
+// Who yields does more in between: looks for work, say.
+constexpr std::int64_t kYieldGaps = 10;
+
+bool Spins(shm::ThreadSlot& slot, std::uintptr_t site, std::int64_t now_ns, std::int64_t shown_ns,
+           std::int64_t gap_ns) {
+  return shm::CountPause(slot.spin, static_cast<std::uint32_t>(site), now_ns, shown_ns, gap_ns);
 }
 
 std::int64_t TimeOf(const shm::ThreadSlot& slot) { return shm::ReadClock(slot.clock).time_ns; }
@@ -28,7 +31,8 @@ void GoOn(shm::ThreadSlot& slot) { shm::GoOnSpinning(slot.spin, TimeOf(slot), Sh
 
 void YieldCounted(GuestThread& thread, std::uintptr_t site) {
   shm::ThreadSlot& slot = *thread.slot;
-  const bool spins = Spins(slot, site, TimeOf(slot) - slot.clock.call_cost_ns, ShownBy(slot));
+  const bool spins = Spins(slot, site, TimeOf(slot) - slot.clock.call_cost_ns, ShownBy(slot),
+                           kYieldGaps * slot.spin_gap_ns);
   Exchange(thread,
            Request{.kind = shm::NotificationKind::kYield,
                    .args = {spins ? 1 : 0, static_cast<std::int64_t>(slot.spin.reads_clock)}});
@@ -52,7 +56,7 @@ void tcs_pause_in_turn(std::uintptr_t site) {
     Charge(slot.clock, tcs::shm::kPauseNs);
     NowNs(*t);  // it may have come to its horizon
   }
-  const bool spins = Spins(slot, site, TimeOf(slot), shown_ns);
+  const bool spins = Spins(slot, site, TimeOf(slot), shown_ns, slot.spin_gap_ns);
   slot.spin.shown_ns = ShownBy(slot);
   if (!spins || slot.spin.last_ns < slot.spin_until_ns) {
     __builtin_ia32_pause();

@@ -1,4 +1,4 @@
-#include "coordinator/calls/spin_waits.h"
+#include "coordinator/tasks/spin_waits.h"
 
 #include <algorithm>
 #include <utility>
@@ -83,7 +83,7 @@ bool SpinWaits::TurnEnds(Task& task, VirtualTime start) const {
     const VirtualDuration debt = std::max(VirtualDuration(), task.debt);
     const VirtualTime acted =
         run_.turn.HasSpoken() ? task.reached : start + (task.reached + debt - start) / 2;
-    robot.acted_until = std::max(robot.acted_until, acted);
+    task.process->acted_until = std::max(task.process->acted_until, acted);
   };
   if (!spins) {
     act();
@@ -93,6 +93,7 @@ bool SpinWaits::TurnEnds(Task& task, VirtualTime start) const {
   SpinWait& spin = task.spin.emplace();
   spin.since = std::min(since, task.reached);
   spin.only_yields = !is_streak;
+  spin.is_first = slot.spin.pauses < 2;
   spin.was_stopped = stopped;
   spin.reads_clock = slot.spin.reads_clock != 0;
   // It may have acted before it has begun.
@@ -117,6 +118,15 @@ VirtualTime SpinWaits::LeastThatActs(const Task& task) const {
   return least;
 }
 
+VirtualTime SpinWaits::NextToWake(const Task& task) {
+  VirtualTime next = VirtualTime::Never();
+  const Robot& robot = *task.process->robot;
+  for (const VirtualCpu* cpu : robot.cpus) {
+    if (cpu != task.cpu) next = std::min(next, robot.scheduler.NextActionOf(cpu->core));
+  }
+  return next;
+}
+
 // Time that it has not computed.
 bool SpinWaits::Passes(const Task& task) {
   return task.spin.has_value() && !task.spin->only_yields && !task.spin->was_stopped &&
@@ -137,16 +147,17 @@ void SpinWaits::PassTime(Task& task) const {
   if (!Passes(task)) return;
   const VirtualTime least = LeastThatActs(task);
   if (least.IsNever()) return;
-  // What the others have done by now it has seen.
-  const VirtualDuration seen = std::max(VirtualDuration(), least - task.reached);
+  // What the others have done by now it has seen. Who sleeps may do something when he wakes.
+  const VirtualTime seen_until = std::min(least, NextToWake(task));
+  const VirtualDuration seen = std::max(VirtualDuration(), seen_until - task.reached);
   Pass(task, seen + StepOf(task) / 2);
 }
 
 bool SpinWaits::IsBeforeItsLook(Task& task) const {
-  const bool looks_now = Passes(task) || (task.spin.has_value() && task.spin->only_yields);
-  if (!looks_now || !task.parked) return false;
+  const bool yields_again = task.spin.has_value() && task.spin->only_yields && !task.spin->is_first;
+  if ((!Passes(task) && !yields_again) || !task.parked) return false;
   const VirtualTime looks = task.cpu->progress + std::max(VirtualDuration(), task.debt);
-  const VirtualTime acted = task.process->robot->acted_until;
+  const VirtualTime acted = task.process->acted_until;
   // Others that look, too, may act again and again.
   if (acted > looks && !std::exchange(task.spin->has_waited, true)) Pass(task, acted - looks);
   return task.debt > VirtualDuration();

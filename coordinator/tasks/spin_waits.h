@@ -62,6 +62,8 @@ class SpinWaits {
   // How far the least advanced core is on which another thread may do what this one waits for: it
   // computes, or spins and has not seen yet what others did last. Never: there is none.
   VirtualTime LeastThatActs(const Task& task) const;
+  // When another core of the robot acts next, whatever it does now.
+  static VirtualTime NextToWake(const Task& task);
 
   RunState& run_;
 };
