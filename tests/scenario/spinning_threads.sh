@@ -20,7 +20,7 @@ for cores in 2 4; do
   for options in "--host-cpus 1" "" "--accounting fixed"; do
     for policy in "" active passive; do
       us=$(OMP_WAIT_POLICY="$policy" run $cores "$build/bin/parallel_regions" $cores 200)
-      between 200 240 "$us" "OpenMP on $cores cores $options $policy"
+      between 200 260 "$us" "OpenMP on $cores cores $options $policy"
     done
   done
 done
@@ -33,13 +33,13 @@ hand_over() { # HOW US LEAST MOST
     between 1.9 2.1 "$cpu" "$1 $options: charged"
   done
 }
-for how in pause yield clock; do hand_over $how 200 150 260; done
-hand_over bare 200 200 310
+for how in pause yield clock; do hand_over $how 200 150 300; done
+hand_over bare 200 200 350
 options="--accounting fixed"
 for how in pause yield clock; do
   run 2 "$build/bin/spinning_hand_over" $how 200 >"$out/first"
   run 2 "$build/bin/spinning_hand_over" $how 200 >"$out/second"
   cmp "$out/first" "$out/second" || fail "$how: two runs differ"
   read -r us _ <"$out/first"
-  between 150 260 "$us" "$how under set costs"
+  between 150 300 "$us" "$how under set costs"
 done
