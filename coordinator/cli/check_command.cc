@@ -28,6 +28,8 @@ const CLI::App* AddCheck(CLI::App* app, CheckArguments* arguments) {
                    "KEY=VALUE: another value for a key of the scenario; repeatable")
       ->allow_extra_args(false);
   check->add_flag("--strict", arguments->strict, "each warning is an error, too: exit status 2");
+  check->add_flag("-v,--verbose", arguments->verbose,
+                  "list all that was mended in files of robots, where a warning names one of them");
   return check;
 }
 
@@ -50,8 +52,12 @@ int CheckCommand(const CheckArguments& arguments) {
   overrides.set = arguments.set;
   overrides.result_directory = AbsolutePathOf("out");
   const auto checked = CheckScenario(arguments.scenario, overrides);
-  if (const auto* scenario = std::get_if<Scenario>(&checked))
+  if (const auto* scenario = std::get_if<Scenario>(&checked)) {
+    if (arguments.verbose) {
+      for (const std::string& detail : scenario->details) Say("mended: " + detail);
+    }
     return SaySound(*scenario, arguments.strict);
+  }
   for (const LoadError& mistake : std::get<std::vector<LoadError>>(checked)) Say(mistake.message);
   return kCannotRun;
 }

@@ -25,8 +25,8 @@ using Point = std::array<double, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
 // What the child says else: a word, and what follows it.
-constexpr char kWhyNotFollows = 'W';
-static_assert(kWhyNotFollows != kMeshFollows);
+constexpr char kWhyNotFollows = 'W', kFlatFollows = 'F', kIsLine = 'L';
+static_assert(kWhyNotFollows != kMeshFollows && kFlatFollows != kMeshFollows);
 
 std::string HullInFile(const std::string& path) {
   auto read = MeshPoints(TextOf(path, kMostBytes, "a mesh"), path);
@@ -37,11 +37,12 @@ std::string HullInFile(const std::string& path) {
       if (!std::isfinite(x)) return std::string(1, kWhyNotFollows) + "a vertex in it is not finite";
     }
   }
+  if (points.empty()) return std::string(1, kWhyNotFollows) + "there is no vertex in it";
   const Hull hull = MeshHull(points, kMostVertices);
-  if (hull.vertices.empty()) {
-    return kWhyNotFollows + fmt::format("its {} vertices span no volume", points.size());
-  }
-  return Packed({hull.vertices, hull.triangles});
+  if (!hull.vertices.empty()) return Packed({hull.vertices, hull.triangles});
+  const Hull plate = MeshHull(PlateOf(points), kMostVertices);
+  if (plate.vertices.empty()) return std::string(1, kIsLine);
+  return kFlatFollows + Packed({plate.vertices, plate.triangles});
 }
 
 [[noreturn]] void Refuse(const std::string& path, std::string_view why) {
@@ -49,9 +50,11 @@ std::string HullInFile(const std::string& path) {
       fmt::format("{}: this mesh cannot be used: {}; repair or replace it", path, why)};
 }
 
-Mesh Read(const std::string& path) {
+// No vertices: a line or a point.
+Mesh Read(const std::string& path, bool* is_flat) {
   if (!IsMeshName(path)) {
-    throw ModelMistake{path + ": is not a mesh that tcs reads; give a file of .stl, .obj or .dae"};
+    throw ModelMistake{path +
+                       ": is not a mesh that tcs reads; give a file of .stl, .obj, .dae or .glb"};
   }
   CheckFile(path, kMostBytes, "a mesh");
   constexpr std::size_t kMostSaid = 1 << 20;
@@ -62,8 +65,10 @@ Mesh Read(const std::string& path) {
     const std::string shown = Quoted(std::string_view(done.result).substr(1, kLongest));
     Refuse(path, shown.substr(1, shown.size() - 2));
   }
+  if (done.result == std::string(1, kIsLine)) return {path, {}, {}};
+  *is_flat = done.result.starts_with(kFlatFollows);
   Surface hull;
-  if (!Unpack(done.result, kMostVertices, 2 * kMostVertices, &hull)) {
+  if (!Unpack(done.result.substr(*is_flat ? 1 : 0), kMostVertices, 2 * kMostVertices, &hull)) {
     Refuse(path, "the library that reads it fails");
   }
   return {path, std::move(hull.vertices), std::move(hull.triangles)};
@@ -86,9 +91,16 @@ std::shared_ptr<const Mesh> MeshLibrary::Take(const std::string& path, const Poi
   std::shared_ptr<const Mesh>& mesh = scaled_[{path, scale}];
   if (mesh != nullptr) return mesh;
   auto read = read_.find(path);
-  if (read == read_.end()) read = read_.emplace(path, Read(path)).first;
+  if (read == read_.end()) {
+    bool is_flat = false;
+    read = read_.emplace(path, Read(path, &is_flat)).first;
+    if (is_flat) flat_.insert(path);
+  }
+  if (read->second.vertices_m.empty()) return nullptr;
   mesh = std::make_shared<const Mesh>(Scaled(read->second, scale));
   return mesh;
 }
+
+bool MeshLibrary::IsFlat(const std::string& path) const { return flat_.contains(path); }
 
 }  // namespace tcs

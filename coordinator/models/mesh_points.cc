@@ -33,7 +33,7 @@ class NoFiles : public Assimp::IOSystem {
 
 bool IsMeshName(const std::string& path) {
   const std::string end = EndOf(path);
-  return end == ".stl" || end == ".obj" || end == ".dae";
+  return end == ".stl" || end == ".obj" || end == ".dae" || end == ".glb" || end == ".gltf";
 }
 
 namespace {

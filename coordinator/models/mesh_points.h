@@ -12,9 +12,9 @@ namespace tcs {
 
 // All vertices of a mesh, in metres (COLLADA's unit is applied), along the file's own axes, as ROS
 // takes them: an up axis is not turned. `text` is what is in the file, the end of whose name,
-// `path`, says whether it is STL, OBJ or COLLADA. No other file is opened. By assimp, which may not
-// survive what is in it: call it in a process of its own (in_child.h). Half a sentence where it
-// cannot be read.
+// `path`, says whether it is STL, OBJ, COLLADA or glTF. No other file is opened. By assimp, which
+// may not survive what is in it: call it in a process of its own (in_child.h). Half a sentence
+// where it cannot be read.
 [[nodiscard]] std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(
     const std::string& text, const std::string& path);
 

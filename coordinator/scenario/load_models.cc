@@ -1,4 +1,6 @@
 // `models` of a scenario file: robots from URDF files, and single bodies of one shape.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -139,15 +141,29 @@ class Models {
 
   RobotModel Read(const YamlValue& urdf, const UrdfUse& use, const PackagePath& packages) {
     const std::string path = PathOf(urdf);
-    auto loaded = LoadUrdf(path, use, packages, &meshes_, &scenario_.warnings);
-    if (const auto* error = std::get_if<LoadError>(&loaded)) {
-      // Of a file as a whole it is the scenario that is to be mended.
-      if (error->message.starts_with(path + ": ")) {
-        urdf.FailPlainly(urdf.name() + ": " + error->message);
+    UrdfRemarks remarks;
+    auto loaded = LoadUrdf(path, use, packages, &meshes_, &remarks);
+    scenario_.warnings.insert(scenario_.warnings.end(), remarks.warnings.begin(),
+                              remarks.warnings.end());
+    scenario_.details.insert(scenario_.details.end(), remarks.details.begin(),
+                             remarks.details.end());
+    if (const auto* errors = std::get_if<std::vector<LoadError>>(&loaded)) {
+      // Where all are asked for, all but the last are noted here.
+      for (std::size_t i = 0; i + 1 < errors->size(); ++i) {
+        urdf.Try([&] { Refuse(urdf, path, (*errors)[i]); });
       }
-      throw ScenarioMistake{error->message};
+      Refuse(urdf, path, errors->back());
     }
     return std::get<RobotModel>(std::move(loaded));
+  }
+
+  [[noreturn]] static void Refuse(const YamlValue& urdf, const std::string& path,
+                                  const LoadError& error) {
+    // Of a file as a whole it is the scenario that is to be mended.
+    if (error.message.starts_with(path + ": ")) {
+      urdf.FailPlainly(urdf.name() + ": " + error.message);
+    }
+    throw ScenarioMistake{error.message};
   }
 
   static bool LoadTouchesModels(const YamlValue& value) {
@@ -160,7 +176,7 @@ class Models {
   }
 
   // Where the joints are at the start.
-  static void LoadStart(const YamlMap& map, RobotModel* model) {
+  void LoadStart(const YamlMap& map, RobotModel* model) {
     const YamlValue* joints = map.Find("joints");
     std::vector<std::optional<YamlValue>> places(model->joints.size());
     if (joints != nullptr) {
@@ -171,6 +187,7 @@ class Models {
         places[joint] = entry.value;
       }
     }
+    PutWithinLimits(map, places, model);
     const auto fault = CheckModel(*model);
     if (!fault) return;
     const auto& place =
@@ -178,6 +195,26 @@ class Models {
     const YamlValue& where = place ? *place : joints != nullptr ? *joints : map.place();
     where.FailPlainly(where.name() + ": " + fault->what +
                       (place || fault->joint < 0 ? "" : "; say in joints where it starts"));
+  }
+
+  // Joints of which nobody says where they start, and that may not start at 0.
+  void PutWithinLimits(const YamlMap& map, const std::vector<std::optional<YamlValue>>& said,
+                       RobotModel* model) {
+    std::string starts;
+    for (std::size_t i = 0; i < model->joints.size(); ++i) {
+      Joint& joint = model->joints[i];
+      if (said[i] || joint.mimic || CoordinatesOf(joint.kind) != 1) continue;
+      if (joint.limits.lower <= 0 && joint.limits.upper >= 0) continue;
+      const double nearest = joint.limits.lower > 0 ? joint.limits.lower : joint.limits.upper;
+      joint.initial_position = {nearest};
+      starts += fmt::format("{}{}: {}", starts.empty() ? "" : ", ", joint.name, nearest);
+    }
+    if (starts.empty()) return;
+    scenario_.warnings.push_back(map.place().place().Prefix() + map.place().name() +
+                                 ": 0 is beyond the limits of some joints, which start as near to "
+                                 "it as they may; to start them there or elsewhere, write joints: "
+                                 "{" +
+                                 starts + "}");
   }
 
   static std::size_t FindJoint(const YamlMap::Entry& entry, const RobotModel& model) {
@@ -284,7 +321,10 @@ class Models {
     std::array<double, 3> scale = {1, 1, 1};
     if (const YamlValue* v = map.Find("scale")) scale = LoadScale(*v);
     try {
-      return MeshShape{meshes_.Take(PathOf(what), scale)};
+      auto mesh = meshes_.Take(PathOf(what), scale);
+      if (mesh == nullptr)
+        what.Fail("is a point or a line, which nothing touches; take another one");
+      return MeshShape{std::move(mesh)};
     } catch (const ModelMistake& mistake) {
       what.FailPlainly(what.name() + ": " + mistake.message);
     }

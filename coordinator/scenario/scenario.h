@@ -319,6 +319,8 @@ struct Scenario {
   std::vector<QuantitySpec> quantities;  // that metrics and these are of
   // What can be run and is hardly what was meant: a sentence each, with its place.
   std::vector<std::string> warnings;
+  // What a warning says of one thing, of each: for `tcsim check -v`.
+  std::vector<std::string> details;
 };
 
 }  // namespace tcs

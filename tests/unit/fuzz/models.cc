@@ -126,19 +126,22 @@ std::string Move(const RobotModel& model, bool* refused) {
 // `path` is what a refusal begins with.
 std::string Load(const std::string& urdf, const std::string& damaged, bool* refused) {
   MeshLibrary meshes;
-  std::vector<std::string> warnings;
-  const auto loaded = LoadUrdf(urdf, {}, PackagePath({TCS_MODEL_ZOO}), &meshes, &warnings);
-  for (const std::string& warning : warnings) {
+  UrdfRemarks remarks;
+  const auto loaded = LoadUrdf(urdf, {}, PackagePath({TCS_MODEL_ZOO}), &meshes, &remarks);
+  for (const std::string& warning : remarks.warnings) {
     if (!IsOneSentence(warning)) return "a warning is: " + Visible(warning);
   }
-  const auto* error = std::get_if<LoadError>(&loaded);
-  *refused = error != nullptr;
-  if (error != nullptr) {
-    const bool is_placed =
-        error->message.starts_with(urdf + ":") || error->message.starts_with(damaged + ":");
-    return is_placed && IsOneSentence(error->message)
-               ? ""
-               : "a refusal does not say where: " + Visible(error->message);
+  const auto* errors = std::get_if<std::vector<LoadError>>(&loaded);
+  *refused = errors != nullptr;
+  if (errors != nullptr) {
+    if (errors->empty()) return "a refusal says nothing";
+    for (const auto& [message] : *errors) {
+      const bool is_placed = message.starts_with(urdf + ":") || message.starts_with(damaged + ":");
+      if (!is_placed || !IsOneSentence(message)) {
+        return "a refusal does not say where: " + Visible(message);
+      }
+    }
+    return {};
   }
   const RobotModel& model = std::get<RobotModel>(loaded);
   // Where its joints start is not in the file.
