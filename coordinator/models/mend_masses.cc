@@ -28,6 +28,8 @@ constexpr double kLeastPart = 1e-3;
 constexpr double kLeastMassKg = 1e-6;
 // Of a body without extent the radius of gyration: it is a small ball.
 constexpr double kLeastRadiusM = 1e-3;
+// What is smaller than that is what rounding left of 0.
+constexpr double kNoRadiusM = 1e-8;
 // Of one without mass: a link as people see it.
 constexpr double kMasslessRadiusM = 0.02;
 
@@ -183,7 +185,8 @@ class Mender {
     Moments moments = NearestMoments(had);
     // A point or a thin rod has no moment to speak of.
     const double least = of.mass_kg * kLeastRadiusM * kLeastRadiusM;
-    const bool is_thin = !(moments[0] > kMargin * moments[2]) || !(moments[0] > 0);
+    const bool is_thin = !(moments[0] > std::max(kMargin * moments[2],
+                                                 of.mass_kg * kNoRadiusM * kNoRadiusM));
     if (is_thin) {
       for (double& moment : moments) moment = std::max(moment, least);
     }

@@ -2,15 +2,19 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "coordinator/models/load_urdf.h"
 #include "coordinator/models/model_mistake.h"
+#include "coordinator/models/srdf.h"
 #include "coordinator/models/uniform_inertial.h"
 #include "coordinator/scenario/load_rotors.h"
 #include "coordinator/scenario/load_values.h"
@@ -19,6 +23,7 @@
 #include "coordinator/scenario/substitute.h"
 #include "simbody_bridge/engines.h"
 #include "simbody_bridge/model/model_check.h"
+#include "simbody_bridge/touch/overlaps.h"
 
 namespace tcs {
 namespace {
@@ -117,7 +122,7 @@ class Models {
 
   void AddRobot(const YamlMap::Entry& entry, const YamlMap& map, const YamlValue& urdf) {
     map.AllowOnly({"urdf", "at", "fixed_base", "joints", "packages", "friction", "self_collision",
-                   "linear_velocity", "angular_velocity", "touches", "rotors"});
+                   "collisions", "linear_velocity", "angular_velocity", "touches", "rotors"});
     UrdfUse use;
     if (const YamlValue* v = map.Find("fixed_base")) use.has_fixed_base = v->AsBoolean();
     if (const YamlValue* v = map.Find("friction")) use.friction = v->AsNonNegativeNumber("");
@@ -135,6 +140,8 @@ class Models {
     if (const YamlValue* v = map.Find("touches")) model.touches_models = LoadTouchesModels(*v);
     LoadVelocities(map, &model);
     LoadStart(map, &model);
+    if (const YamlValue* v = map.Find("collisions")) LoadCollisions(*v, &model);
+    if (model.has_self_collision) IgnoreOverlaps(map, &model);
     if (const YamlValue* v = map.Find("rotors")) LoadRotors(*v, &model);
     world_.models.push_back(std::move(model));
   }
@@ -215,6 +222,78 @@ class Models {
                                  "it as they may; to start them there or elsewhere, write joints: "
                                  "{" +
                                  starts + "}");
+  }
+
+  void LoadCollisions(const YamlValue& value, RobotModel* model) {
+    if (!model->has_self_collision) {
+      value.Fail("says which links do not collide, but none do; add self_collision: true, or remove "
+                 "it");
+    }
+    const YamlMap map = value.AsMap();
+    map.AllowOnly({"ignore", "srdf"});
+    if (const YamlValue* pairs = map.Find("ignore")) {
+      for (const YamlValue& pair : pairs->AsList("[[LINK, LINK]]")) {
+        const std::vector<YamlValue> links = pair.AsList("[LINK, LINK]");
+        if (links.size() != 2) pair.Fail("does not name two links; write [LINK, LINK]");
+        Ignore(FindLink(links[0], *model), FindLink(links[1], *model), model);
+      }
+    }
+    if (const YamlValue* srdf = map.Find("srdf")) ReadSrdf(*srdf, model);
+  }
+
+  static void Ignore(int a, int b, RobotModel* model) {
+    if (a == b || Ignores(*model, a, b)) return;
+    model->ignored_pairs.push_back(std::minmax(a, b));
+  }
+
+  static int FindLink(const YamlValue& value, const RobotModel& model) {
+    const std::string name = value.AsText();
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < model.links.size(); ++i) {
+      if (model.links[i].name == name) return static_cast<int>(i);
+      known.push_back(model.links[i].name);
+    }
+    value.Fail("names the unknown link '" + name + "' of " + model.name + "; " +
+               Suggest(name, known, "links"));
+  }
+
+  // A file of MoveIt may name links of a gripper that this robot does not have.
+  void ReadSrdf(const YamlValue& srdf, RobotModel* model) {
+    std::map<std::string_view, int> links;
+    for (std::size_t i = 0; i < model->links.size(); ++i) {
+      links.emplace(model->links[i].name, static_cast<int>(i));
+    }
+    try {
+      for (const auto& [a, b] : DisabledCollisions(PathOf(srdf))) {
+        const auto first = links.find(a), second = links.find(b);
+        if (first == links.end() || second == links.end()) continue;
+        Ignore(first->second, second->second, model);
+      }
+    } catch (const ModelMistake& mistake) {
+      srdf.FailPlainly(srdf.name() + ": " + mistake.message);
+    }
+  }
+
+  // What is in each other at the start would be thrown apart.
+  void IgnoreOverlaps(const YamlMap& map, RobotModel* model) {
+    const std::vector<std::pair<int, int>> pairs = OverlappingLinks(*model);
+    if (pairs.empty()) return;
+    constexpr std::size_t kMostNamed = 8;
+    std::string named;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const auto name = [&](int link) { return model->links[static_cast<std::size_t>(link)].name; };
+      const std::string pair = "[" + name(pairs[i].first) + ", " + name(pairs[i].second) + "]";
+      if (i < kMostNamed) named += (i == 0 ? "" : ", ") + pair;
+      scenario_.details.push_back(map.place().place().Prefix() + map.place().name() + ": the links " +
+                                  pair + " overlap at the start");
+      Ignore(pairs[i].first, pairs[i].second, model);
+    }
+    scenario_.warnings.push_back(
+        map.place().place().Prefix() + map.place().name() +
+        ": links overlap at the start, and such do not collide; to say so, write collisions: "
+        "{ignore: [" +
+        named + (pairs.size() > kMostNamed ? fmt::format(", … ({} in all; `tcsim check -v` lists them)", pairs.size()) : "") +
+        "]}");
   }
 
   static std::size_t FindJoint(const YamlMap::Entry& entry, const RobotModel& model) {

@@ -214,21 +214,53 @@ class Writer {
     text_ += "</actuator>";
   }
 
+  // MuJoCo leaves out pairs of bodies only. Of bodies of which some links are to pass through each
+  // other and others not, these are paired by name.
   void WriteExclusions() {
     text_ += "<contact>";
+    std::set<std::pair<int, int>> apart;  // bodies
+    for (const auto& pair : forest_.ignored_pairs) PairWhatTouches(pair, &apart);
     const int bodies = static_cast<int>(forest_.bodies.size());
     for (int a = 0; a < bodies; ++a) {
       const int model = forest_.model_of_body[static_cast<std::size_t>(a)];
-      if (!MayTouch(forest_, {nullptr, a, {}, model}, {nullptr, kWorldBody, {}, model})) {
+      if (apart.contains({kWorldBody, a}) ||
+          !MayTouch(forest_, {nullptr, a, {}, model}, {nullptr, kWorldBody, {}, model})) {
         text_ += fmt::format("<exclude body1='b{}' body2='w{}'/>", a, model);
       }
       for (int b = a + 1; b < bodies; ++b) {
         const int other = forest_.model_of_body[static_cast<std::size_t>(b)];
-        if (MayTouch(forest_, {nullptr, a, {}, model}, {nullptr, b, {}, other})) continue;
+        if (!apart.contains({a, b}) &&
+            MayTouch(forest_, {nullptr, a, {}, model}, {nullptr, b, {}, other})) {
+          continue;
+        }
         text_ += fmt::format("<exclude body1='b{}' body2='b{}'/>", a, b);
       }
     }
     text_ += "</contact>";
+  }
+
+  // Of the bodies of two links, which become known to be apart.
+  void PairWhatTouches(const std::pair<int, int>& links, std::set<std::pair<int, int>>* apart) {
+    const auto first = std::ranges::find(forest_.shapes, links.first, &ForestShape::link);
+    const auto second = std::ranges::find(forest_.shapes, links.second, &ForestShape::link);
+    if (first == forest_.shapes.end() || second == forest_.shapes.end()) return;  // no shapes
+    const int model = first->model;
+    const std::pair<int, int> bodies = std::minmax(first->body, second->body);
+    if (bodies.first == bodies.second || !apart->insert(bodies).second) return;
+    for (std::size_t i = 0; i < forest_.shapes.size(); ++i) {
+      for (std::size_t k = 0; k < forest_.shapes.size(); ++k) {
+        const ForestShape &a = forest_.shapes[i], &b = forest_.shapes[k];
+        if (a.body != bodies.first || b.body != bodies.second || a.model != model ||
+            b.model != model || !MayTouch(forest_, a, b)) {
+          continue;
+        }
+        const double friction = std::min(a.shape->friction, b.shape->friction);
+        text_ += fmt::format(
+            "<pair geom1='s{0}' geom2='s{1}' condim='3' friction='{2:.17g} {2:.17g} 0.005 0.0001 "
+            "0.0001' solref='{3}' solimp='{4}'/>",
+            i, k, friction, kContact, kComingIn);
+      }
+    }
   }
 
   const Forest& forest_;

@@ -147,6 +147,77 @@ TEST(LoadModels, ABaseWithoutMassIsFixed) {
   EXPECT_THAT(scenario.warnings, testing::Contains(HasSubstr("link 'base' is the root")));
 }
 
+// The pair of a chain a - b - c - d that starts folded: d is in a, and c and a are joined to others.
+constexpr std::string_view kFolded = R"(<robot name="folded">
+  <link name="a"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <link name="b"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><origin xyz="1 0 0"/><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <link name="c"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="d"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><geometry><capsule radius="0.05" length="0.1"/></geometry></collision></link>
+  <joint name="i" type="continuous"><parent link="a"/><child link="b"/></joint>
+  <joint name="j" type="continuous"><parent link="b"/><child link="c"/></joint>
+  <joint name="k" type="prismatic"><parent link="c"/><child link="d"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+</robot>)";
+
+constexpr std::string_view kFoldedScenario = R"(duration: 1s
+dynamics: {}
+models:
+  arm: {urdf: folded.urdf, fixed_base: true, self_collision: true}
+robots:
+  r: {clients: {c: {command: [sleep, "1"]}}}
+)";
+
+TEST(LoadModels, LinksThatOverlapAtTheStartAreIgnored) {
+  const Folder folder;
+  folder.Write("folded.urdf", kFolded);
+  const Scenario scenario = Loaded(folder, kFoldedScenario);
+  EXPECT_THAT(Named(scenario, "arm").ignored_pairs, ElementsAre(std::pair(0, 3)));
+  EXPECT_THAT(scenario.warnings,
+              ElementsAre(HasSubstr(":4: models.arm: links overlap at the start, and such do not "
+                                    "collide; to say so, write collisions: {ignore: [[a, d]]}")));
+  // What is said is not said again; what does not collide needs no word.
+  for (const std::string_view way :
+       {"self_collision: true, collisions: {ignore: [[d, a]]}", "self_collision: false"}) {
+    EXPECT_THAT(Loaded(folder, WithReplaced("self_collision: true", way, kFoldedScenario)).warnings,
+                testing::IsEmpty());
+  }
+  // Where they are apart there is nothing to ignore, and touching is no overlap: d is 0.15 above.
+  const Scenario apart = Loaded(
+      folder, WithReplaced("self_collision", "joints: {k: 0.15}, self_collision", kFoldedScenario));
+  EXPECT_THAT(Named(apart, "arm").ignored_pairs, testing::IsEmpty());
+}
+
+TEST(LoadModels, MoveItSaysWhichLinksAreIgnored) {
+  const Folder folder;
+  folder.Write("folded.urdf", kFolded);
+  folder.Write("arm.srdf",
+               "<robot name='folded'><disable_collisions link1='b' link2='d' reason='Never'/>"
+               "<disable_collisions link1='d' link2='a'/><disable_collisions link1='x' link2='a'/>"
+               "</robot>");
+  const Scenario scenario = Loaded(
+      folder, WithReplaced("self_collision: true",
+                           "self_collision: true, collisions: {srdf: arm.srdf}", kFoldedScenario));
+  EXPECT_THAT(Named(scenario, "arm").ignored_pairs, ElementsAre(std::pair(1, 3), std::pair(0, 3)));
+  EXPECT_THAT(scenario.warnings, testing::IsEmpty());
+}
+
+TEST(LoadModels, WhatIsIgnoredIsChecked) {
+  const Folder folder;
+  folder.Write("folded.urdf", kFolded);
+  const auto complaint = [&](std::string_view way) {
+    return Complaint(folder, WithReplaced("self_collision: true", way, kFoldedScenario));
+  };
+  EXPECT_THAT(complaint("collisions: {ignore: [[a, d]]}"), HasSubstr("add self_collision: true"));
+  EXPECT_THAT(complaint("self_collision: true, collisions: {ignore: [[a, dd]]}"),
+              HasSubstr("names the unknown link 'dd' of arm; did you mean 'd'?"));
+  EXPECT_THAT(complaint("self_collision: true, collisions: {ignore: [[a]]}"),
+              HasSubstr("write [LINK, LINK]"));
+  EXPECT_THAT(complaint("self_collision: true, collisions: {srdf: folded.yaml}"),
+              HasSubstr("No such file"));
+}
+
 TEST(LoadModels, CheckSaysAllMistakesOfARobotsFile) {
   const Folder folder;
   std::string arm(kArm);
