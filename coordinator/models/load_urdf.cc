@@ -13,6 +13,7 @@
 #include "coordinator/models/urdf_skeleton.h"
 #include "coordinator/models/urdf_values.h"
 #include "coordinator/models/urdf_xml.h"
+#include "coordinator/models/xacro.h"
 #include "coordinator/os/visible.h"
 #include "simbody_bridge/model/rigid_tree.h"
 #include "simbody_bridge/model/vectors.h"
@@ -69,7 +70,7 @@ void SetFriction(const tinyxml2::XMLDocument& document, const UrdfUse& use, Robo
 }
 
 // Nothing but how the robot looks depends on these.
-void NoteMissingVisuals(const tinyxml2::XMLDocument& document, const PackagePath& packages,
+void NoteMissingVisuals(const tinyxml2::XMLDocument& document, const UrdfSurroundings& around,
                         UrdfNotes* notes) {
   for (const XMLElement* link = document.RootElement()->FirstChildElement("link"); link != nullptr;
        link = link->NextSiblingElement("link")) {
@@ -84,7 +85,7 @@ void NoteMissingVisuals(const tinyxml2::XMLDocument& document, const PackagePath
                        OwnerOf(*link) + " is drawn without a mesh: " + why);
       };
       try {
-        const std::string path = packages.Find(name, notes->path());
+        const std::string path = around.packages.Find(name, around.described_in);
         std::error_code error;
         if (!std::filesystem::exists(path, error)) note(path + " does not exist");
       } catch (const ModelMistake& mistake) {
@@ -94,44 +95,46 @@ void NoteMissingVisuals(const tinyxml2::XMLDocument& document, const PackagePath
   }
 }
 
-RobotModel Load(const UrdfUse& use, const PackagePath& packages, MeshLibrary* meshes,
-                UrdfNotes* notes) {
-  const auto document = ReadUrdfXml(notes->path());
-  const auto understood = UnderstoodPart(*document, notes);
+RobotModel Load(const tinyxml2::XMLDocument& document, const UrdfUse& use,
+                const UrdfSurroundings& around, UrdfNotes* notes) {
+  const auto understood = UnderstoodPart(document, notes);
   WithCustoms(understood.get(), notes);
   const UrdfSkeleton skeleton(*understood, notes);
   if (notes->HasMistakes()) return {};
-  RobotModel model = WithValues(skeleton, *understood, {packages, *meshes}, notes);
+  RobotModel model = WithValues(skeleton, *understood, around, notes);
   model.has_fixed_base = use.has_fixed_base;
   if (!NoteAxes(skeleton, model, notes)) return {};
-  SetFriction(*document, use, &model);
+  SetFriction(document, use, &model);
   FixMasslessBase(skeleton, &model, notes);
   MendMasses(
       &model, [&](std::size_t link) { return LineOf(skeleton.link(link)); }, notes);
   skeleton.NoteFaultOf(WithAStart(model), notes);
-  NoteMissingVisuals(*document, packages, notes);
+  NoteMissingVisuals(document, around, notes);
   return model;
 }
 
 }  // namespace
 
-std::variant<RobotModel, std::vector<LoadError>> LoadUrdf(const std::string& path,
+std::variant<LoadedUrdf, std::vector<LoadError>> LoadUrdf(const std::string& path,
                                                           const UrdfUse& use,
                                                           const PackagePath& packages,
                                                           MeshLibrary* meshes,
                                                           UrdfRemarks* remarks) {
-  UrdfNotes notes(path);
+  LoadedUrdf loaded;
   std::vector<LoadError> errors;
-  RobotModel model;
+  const bool is_xacro = HasXacro() && (!use.xacro_arguments.empty() || IsXacroFile(path));
+  UrdfNotes notes(is_xacro ? path + " as xacro expands it" : path);
   try {
-    model = Load(use, packages, meshes, &notes);
+    if (is_xacro) loaded.expanded = ExpandedByXacro(path, use.xacro_arguments);
+    const auto document = is_xacro ? ParseUrdf(notes.path(), loaded.expanded) : ReadUrdfXml(path);
+    loaded.model = Load(*document, use, {packages, *meshes, path}, &notes);
   } catch (const ModelMistake& mistake) {
     errors.push_back({Visible(mistake.message)});  // names of files are whatever they are
   }
   for (std::string& sentence : notes.Mistakes()) errors.push_back({std::move(sentence)});
   notes.Tell(remarks);
   if (!errors.empty()) return errors;
-  return model;
+  return loaded;
 }
 
 }  // namespace tcs

@@ -1,6 +1,7 @@
 // The way from a robot's description, a URDF file, to a RobotModel.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -19,6 +20,13 @@ struct UrdfUse {
   bool has_fixed_base = false;
   // Of all shapes; none: what the file says, else 0.8.
   std::optional<double> friction{};
+  // Of a file of xacro, by name.
+  std::map<std::string, std::string> xacro_arguments{};
+};
+
+struct LoadedUrdf {
+  RobotModel model;
+  std::string expanded;  // what xacro has made of the file; empty: it is none
 };
 
 // Loads and checks the URDF file `path` (absolute): CheckModel finds nothing wrong with what it
@@ -26,9 +34,9 @@ struct UrdfUse {
 // and joints are in the order of the file. What the field's other tools load is loaded, and what
 // was mended is in `remarks`. Otherwise the mistakes, as far as they can be seen at once: each a
 // sentence beginning "PATH:LINE: " ("PATH: " where the file cannot be read at all). A base that has
-// no mass is fixed. Meshes are convex hulls. Reads the environment; not for several threads at
-// once.
-[[nodiscard]] std::variant<RobotModel, std::vector<LoadError>> LoadUrdf(const std::string& path,
+// no mass is fixed. Meshes are convex hulls. A file of xacro is expanded by the machine's `xacro`,
+// if there is one. Reads the environment; not for several threads at once.
+[[nodiscard]] std::variant<LoadedUrdf, std::vector<LoadError>> LoadUrdf(const std::string& path,
                                                                         const UrdfUse& use,
                                                                         const PackagePath& packages,
                                                                         MeshLibrary* meshes,

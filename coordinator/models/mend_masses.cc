@@ -185,8 +185,8 @@ class Mender {
     Moments moments = NearestMoments(had);
     // A point or a thin rod has no moment to speak of.
     const double least = of.mass_kg * kLeastRadiusM * kLeastRadiusM;
-    const bool is_thin = !(moments[0] > std::max(kMargin * moments[2],
-                                                 of.mass_kg * kNoRadiusM * kNoRadiusM));
+    const bool is_thin =
+        !(moments[0] > std::max(kMargin * moments[2], of.mass_kg * kNoRadiusM * kNoRadiusM));
     if (is_thin) {
       for (double& moment : moments) moment = std::max(moment, least);
     }

@@ -91,7 +91,7 @@ std::optional<Geometry> MeshOf(const urdf::Mesh& mesh, const XMLElement& element
   };
   if (mesh.scale.x * mesh.scale.y * mesh.scale.z == 0) return mistake("the scale of a mesh is 0");
   try {
-    const std::string path = surroundings.packages.Find(mesh.filename, notes->path());
+    const std::string path = surroundings.packages.Find(mesh.filename, surroundings.described_in);
     const auto taken = surroundings.meshes.Take(path, From(mesh.scale));
     if (taken == nullptr) {
       notes->AddMend("line", LineOf(element),

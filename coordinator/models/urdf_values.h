@@ -3,6 +3,8 @@
 
 #include <tinyxml2.h>
 
+#include <string>
+
 #include "coordinator/models/mesh_library.h"
 #include "coordinator/models/package_path.h"
 #include "coordinator/models/urdf_notes.h"
@@ -15,6 +17,7 @@ namespace tcs {
 struct UrdfSurroundings {
   const PackagePath& packages;
   MeshLibrary& meshes;
+  std::string described_in;  // the file
 };
 
 // The skeleton's model with the values of `understood`, the document that it was made of. What

@@ -73,10 +73,11 @@ int LineOfXacro(const XMLElement* root) {
   std::filesystem::path expanded = path;
   expanded.replace_extension(expanded.extension() == ".xacro" ? "" : ".expanded.urdf");
   if (expanded.extension().empty()) expanded += ".urdf";
-  FailAt(
-      path, line,
-      fmt::format("xacro is not expanded here; do it once, by `xacro {} > {}`, and name that file",
-                  path, expanded.string()));
+  FailAt(path, line,
+         fmt::format(
+             "xacro is not expanded here, for there is no program `xacro` in PATH; install it, or "
+             "call `xacro {} > {}` where it is, and name that file",
+             path, expanded.string()));
 }
 
 void CheckRoot(const std::string& path, const XMLElement* root) {
@@ -105,7 +106,23 @@ void CheckRoot(const std::string& path, const XMLElement* root) {
 }  // namespace
 
 std::unique_ptr<tinyxml2::XMLDocument> ReadUrdfXml(const std::string& path) {
-  std::string text = TextOf(path, kMostUrdfBytes, "a URDF file");
+  return ParseUrdf(path, TextOf(path, kMostUrdfBytes, "a URDF file"));
+}
+
+bool IsXacroFile(const std::string& path) {
+  try {
+    const std::string text = TextOf(path, kMostUrdfBytes, "a URDF file");
+    tinyxml2::XMLDocument document;
+    return document.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS &&
+           document.RootElement() != nullptr && LineOfXacro(document.RootElement()) > 0;
+  } catch (const ModelMistake&) {
+    return false;
+  }
+}
+
+std::unique_ptr<tinyxml2::XMLDocument> ParseUrdf(const std::string& path,
+                                                 const std::string& whole) {
+  std::string text = whole;
   // Some have been saved with the end of a string.
   while (text.ends_with('\0')) text.pop_back();
   if (text.find('\0') != std::string::npos) {

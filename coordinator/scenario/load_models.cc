@@ -1,8 +1,8 @@
 // `models` of a scenario file: robots from URDF files, and single bodies of one shape.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -16,6 +16,7 @@
 #include "coordinator/models/model_mistake.h"
 #include "coordinator/models/srdf.h"
 #include "coordinator/models/uniform_inertial.h"
+#include "coordinator/models/xacro.h"
 #include "coordinator/scenario/load_rotors.h"
 #include "coordinator/scenario/load_values.h"
 #include "coordinator/scenario/nearest.h"
@@ -122,13 +123,17 @@ class Models {
 
   void AddRobot(const YamlMap::Entry& entry, const YamlMap& map, const YamlValue& urdf) {
     map.AllowOnly({"urdf", "at", "fixed_base", "joints", "packages", "friction", "self_collision",
-                   "collisions", "linear_velocity", "angular_velocity", "touches", "rotors"});
+                   "collisions", "xacro", "linear_velocity", "angular_velocity", "touches",
+                   "rotors"});
     UrdfUse use;
     if (const YamlValue* v = map.Find("fixed_base")) use.has_fixed_base = v->AsBoolean();
     if (const YamlValue* v = map.Find("friction")) use.friction = v->AsNonNegativeNumber("");
+    if (const YamlValue* v = map.Find("xacro")) use.xacro_arguments = LoadXacro(*v);
     std::vector<std::string> packages = PackagesOf(map);
-    RobotModel model = Read(urdf, use, PackagePath(packages));
+    LoadedUrdf loaded = Read(urdf, use, PackagePath(packages));
+    RobotModel& model = loaded.model;
     model.name = entry.key;
+    if (!loaded.expanded.empty()) scenario_.urdf_expanded[model.name] = std::move(loaded.expanded);
     scenario_.urdf_packages[model.name] = std::move(packages);
     scenario_.urdf_files[model.name] = PathOf(urdf);
     if (const YamlValue* v = map.Find("at")) {
@@ -146,7 +151,21 @@ class Models {
     world_.models.push_back(std::move(model));
   }
 
-  RobotModel Read(const YamlValue& urdf, const UrdfUse& use, const PackagePath& packages) {
+  static std::map<std::string, std::string> LoadXacro(const YamlValue& value) {
+    if (!HasXacro()) {
+      value.Fail(
+          "has arguments for xacro, but there is no program `xacro` in PATH; install it, or "
+          "expand the file where it is and remove this");
+    }
+    std::map<std::string, std::string> arguments;
+    const YamlMap map = value.AsMap();
+    for (const YamlMap::Entry& entry : map.entries()) {
+      arguments[entry.key] = entry.value.AsText();
+    }
+    return arguments;
+  }
+
+  LoadedUrdf Read(const YamlValue& urdf, const UrdfUse& use, const PackagePath& packages) {
     const std::string path = PathOf(urdf);
     UrdfRemarks remarks;
     auto loaded = LoadUrdf(path, use, packages, &meshes_, &remarks);
@@ -161,7 +180,7 @@ class Models {
       }
       Refuse(urdf, path, errors->back());
     }
-    return std::get<RobotModel>(std::move(loaded));
+    return std::get<LoadedUrdf>(std::move(loaded));
   }
 
   [[noreturn]] static void Refuse(const YamlValue& urdf, const std::string& path,
@@ -226,8 +245,9 @@ class Models {
 
   void LoadCollisions(const YamlValue& value, RobotModel* model) {
     if (!model->has_self_collision) {
-      value.Fail("says which links do not collide, but none do; add self_collision: true, or remove "
-                 "it");
+      value.Fail(
+          "says which links do not collide, but none do; add self_collision: true, or remove "
+          "it");
     }
     const YamlMap map = value.AsMap();
     map.AllowOnly({"ignore", "srdf"});
@@ -284,15 +304,18 @@ class Models {
       const auto name = [&](int link) { return model->links[static_cast<std::size_t>(link)].name; };
       const std::string pair = "[" + name(pairs[i].first) + ", " + name(pairs[i].second) + "]";
       if (i < kMostNamed) named += (i == 0 ? "" : ", ") + pair;
-      scenario_.details.push_back(map.place().place().Prefix() + map.place().name() + ": the links " +
-                                  pair + " overlap at the start");
+      scenario_.details.push_back(map.place().place().Prefix() + map.place().name() +
+                                  ": the links " + pair + " overlap at the start");
       Ignore(pairs[i].first, pairs[i].second, model);
     }
     scenario_.warnings.push_back(
         map.place().place().Prefix() + map.place().name() +
         ": links overlap at the start, and such do not collide; to say so, write collisions: "
         "{ignore: [" +
-        named + (pairs.size() > kMostNamed ? fmt::format(", … ({} in all; `tcsim check -v` lists them)", pairs.size()) : "") +
+        named +
+        (pairs.size() > kMostNamed
+             ? fmt::format(", … ({} in all; `tcsim check -v` lists them)", pairs.size())
+             : "") +
         "]}");
   }
 

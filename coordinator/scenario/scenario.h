@@ -300,6 +300,8 @@ struct Scenario {
   std::uint64_t seed = 1;
   std::optional<WorldSpec> world;                 // none: no dynamics
   std::map<std::string, std::string> urdf_files;  // of the models that come from such
+  // Of these what xacro has made of the file, where it has.
+  std::map<std::string, std::string> urdf_expanded;
   // Of these the folders, in `packages`, that their meshes' packages may be in.
   std::map<std::string, std::vector<std::string>> urdf_packages;
   std::vector<RobotSpec> robots;

@@ -97,8 +97,8 @@ struct Smaller {
       const Vector out = Minus(vertex, middle);
       const double length = std::sqrt(Dot(out, out));
       const double part = length > 0 ? Less(length, 2 * kSkinM) / length : 1;
-      smaller->vertices_m.push_back({middle[0] + part * out[0], middle[1] + part * out[1],
-                                     middle[2] + part * out[2]});
+      smaller->vertices_m.push_back(
+          {middle[0] + part * out[0], middle[1] + part * out[1], middle[2] + part * out[2]});
     }
     return MeshShape{smaller};
   }
@@ -106,7 +106,9 @@ struct Smaller {
 
 // The radius of a ball around the origin of its frame that holds the shape.
 struct Reach {
-  double operator()(const BoxShape& box) const { return std::sqrt(Dot(box.size_m, box.size_m)) / 2; }
+  double operator()(const BoxShape& box) const {
+    return std::sqrt(Dot(box.size_m, box.size_m)) / 2;
+  }
   double operator()(const SphereShape& sphere) const { return sphere.radius_m; }
   double operator()(const CylinderShape& cylinder) const {
     return std::hypot(cylinder.radius_m, cylinder.length_m / 2);
@@ -161,7 +163,8 @@ std::vector<std::pair<int, int>> OverlappingLinks(const RobotModel& model) {
       const int body = body_of(a.link), other = body_of(b.link);
       if (body == other || hangs_on(body, other) || hangs_on(other, body)) continue;
       const std::pair<int, int> pair = std::minmax(a.link, b.link);
-      if (Ignores(model, pair.first, pair.second) || std::ranges::find(pairs, pair) != pairs.end()) {
+      if (Ignores(model, pair.first, pair.second) ||
+          std::ranges::find(pairs, pair) != pairs.end()) {
         continue;
       }
       if (AreApart(a, b)) continue;

@@ -143,7 +143,7 @@ std::string Load(const std::string& urdf, const std::string& damaged, bool* refu
     }
     return {};
   }
-  const RobotModel& model = std::get<RobotModel>(loaded);
+  const RobotModel& model = std::get<LoadedUrdf>(loaded).model;
   // Where its joints start is not in the file.
   if (CheckModel(model).has_value()) return {};
   constexpr std::size_t kMostLinks = 60;

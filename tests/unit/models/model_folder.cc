@@ -42,7 +42,7 @@ Loaded LoadFile(const std::string& path, const UrdfUse& use,
     }
     loaded.mistake = loaded.mistakes.at(0);
   } else {
-    loaded.model = std::get<RobotModel>(std::move(result));
+    loaded.model = std::get<LoadedUrdf>(std::move(result)).model;
   }
   return loaded;
 }

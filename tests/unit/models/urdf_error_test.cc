@@ -1,6 +1,7 @@
 // Every mistake in a robot's description is one sentence that begins with its place.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include <ostream>
 #include <stdexcept>
@@ -83,7 +84,15 @@ struct Mistake {
 
 void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
 
-class UrdfMistakeTest : public testing::TestWithParam<Mistake> {};
+class UrdfMistakeTest : public testing::TestWithParam<Mistake> {
+ protected:
+  // Whatever the machine has: here there is no xacro.
+  UrdfMistakeTest() { setenv("PATH", "/nowhere", 1); }
+  ~UrdfMistakeTest() override { setenv("PATH", path_.c_str(), 1); }
+
+ private:
+  const std::string path_ = getenv("PATH");
+};
 
 TEST_P(UrdfMistakeTest, IsOneSentenceWithItsPlace) {
   const ModelFolder folder;

@@ -147,7 +147,8 @@ TEST(LoadModels, ABaseWithoutMassIsFixed) {
   EXPECT_THAT(scenario.warnings, testing::Contains(HasSubstr("link 'base' is the root")));
 }
 
-// The pair of a chain a - b - c - d that starts folded: d is in a, and c and a are joined to others.
+// The pair of a chain a - b - c - d that starts folded: d is in a, and c and a are joined to
+// others.
 constexpr std::string_view kFolded = R"(<robot name="folded">
   <link name="a"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
   <link name="b"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
