@@ -484,6 +484,20 @@ class Models {
   MeshLibrary meshes_;
 };
 
+// A robot without collision shapes meets no floor.
+void WarnOfWhatFallsThrough(const YamlMap& map, Scenario* scenario) {
+  const WorldSpec& world = *scenario->world;
+  if (world.fixtures.empty()) return;
+  for (const RobotModel& model : world.models) {
+    const auto has_shapes = [](const Link& link) { return !link.shapes.empty(); };
+    if (model.has_fixed_base || std::ranges::any_of(model.links, has_shapes)) continue;
+    const YamlValue* place = map.Find(model.name);
+    scenario->warnings.push_back(place->place().Prefix() + place->name() +
+                                 ": no link has a collision shape, so it falls through whatever "
+                                 "is below it; add <collision> to its links");
+  }
+}
+
 }  // namespace
 
 void LoadModels(const YamlValue& value, const Variables& variables, Scenario* scenario) {
@@ -500,6 +514,7 @@ void LoadModels(const YamlValue& value, const Variables& variables, Scenario* sc
   if (map.entries().empty()) value.Fail("is empty; describe at least one model");
   Models models(variables, scenario);
   map.ForEach([&](const YamlMap::Entry& entry) { models.Add(entry); });
+  WarnOfWhatFallsThrough(map, scenario);
   // What is static needs no steps.
   if (engine.has_integrators && !scenario->world->models.empty() &&
       scenario->world->integrator.kind != IntegratorKind::kRungeKutta3) {
