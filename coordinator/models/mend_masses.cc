@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,8 @@ constexpr double kMargin = 1e-9;
 constexpr double kLeastPart = 1e-3;
 // … and at least that.
 constexpr double kLeastMassKg = 1e-6;
-// Of a body without extent the radius of gyration: it is a small ball.
-constexpr double kLeastRadiusM = 1e-3;
+// A body without extent is a ball of iron.
+constexpr double kIronKgPerM3 = 7900;
 // What is smaller than that is what rounding left of 0.
 constexpr double kNoRadiusM = 1e-8;
 // Of one without mass: a link as people see it.
@@ -67,6 +68,11 @@ void Add(const Matrix3& change, const Pose& pose, Inertial* inertial) {
   inertial->ixy_kgm2 += along(0, 1);
   inertial->ixz_kgm2 += along(0, 2);
   inertial->iyz_kgm2 += along(1, 2);
+}
+
+double MomentOfIron(double mass_kg) {
+  const double radius_m = std::cbrt(3 * mass_kg / (4 * std::numbers::pi * kIronKgPerM3));
+  return 0.4 * mass_kg * radius_m * radius_m;
 }
 
 std::string Text(const Moments& moments) {
@@ -184,7 +190,7 @@ class Mender {
     const Moments& had = principal.moments;
     Moments moments = NearestMoments(had);
     // A point or a thin rod has no moment to speak of.
-    const double least = of.mass_kg * kLeastRadiusM * kLeastRadiusM;
+    const double least = MomentOfIron(of.mass_kg);
     const bool is_thin =
         !(moments[0] > std::max(kMargin * moments[2], of.mass_kg * kNoRadiusM * kNoRadiusM));
     if (is_thin) {

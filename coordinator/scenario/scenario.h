@@ -202,6 +202,8 @@ struct JointGroup {
   std::string model;
   std::vector<int> joints;         // as Dynamics numbers them
   std::vector<std::string> names;  // of each
+  // Of the model's joints that follow others, which nobody drives, but which commands may name.
+  std::vector<std::string> followers{};
 };
 
 // The firmware of a robot with driven wheels: what comes in is how fast it is to go.
