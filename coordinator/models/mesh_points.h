@@ -18,7 +18,7 @@ namespace tcs {
 [[nodiscard]] std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(
     const std::string& text, const std::string& path);
 
-// The same with its triangles; polygons are made of them.
+// The same with its triangles; polygons are made of them. COLLADA and glTF have a colour.
 [[nodiscard]] std::variant<Surface, std::string> MeshSurface(const std::string& text,
                                                              const std::string& path);
 
