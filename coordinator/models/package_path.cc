@@ -138,33 +138,50 @@ PackagePath::PackagePath(std::vector<std::string> folders) : folders_(std::move(
   }
 }
 
-// The first is the likeliest.
-std::vector<std::string> PackagePath::Candidates(const std::string& package,
-                                                 const std::string& described_in) const {
-  std::vector<std::string> candidates;
-  const auto add = [&](const fs::path& path) {
+namespace {
+
+// Folders that there are, each once.
+class Candidates {
+ public:
+  void Add(const fs::path& path) {
     if (!IsFolder(path)) return;
-    const std::string text = path.lexically_normal().string();
-    if (std::ranges::find(candidates, text) == candidates.end()) candidates.push_back(text);
-  };
+    std::string text = path.lexically_normal().string();
+    if (std::ranges::find(all_, text) == all_.end()) all_.push_back(std::move(text));
+  }
+  std::vector<std::string> Take() { return std::move(all_); }
+
+ private:
+  std::vector<std::string> all_;
+};
+
+}  // namespace
+
+std::vector<std::string> PackagePath::Named(const std::string& package,
+                                            const std::string& described_in) const {
+  Candidates candidates;
   for (const fs::path folder : folders_) {
-    add(folder / package);
+    candidates.Add(folder / package);
     // As in ROS, where a folder of the path may be a package itself.
-    if (folder.filename() == package || NameOfPackage(folder) == package) add(folder);
+    if (folder.filename() == package || NameOfPackage(folder) == package) candidates.Add(folder);
   }
   for (fs::path folder = fs::path(described_in).parent_path(); folder.has_relative_path();
        folder = folder.parent_path()) {
-    if (folder.filename() == package || NameOfPackage(folder) == package) add(folder);
+    if (folder.filename() == package || NameOfPackage(folder) == package) candidates.Add(folder);
   }
+  for (const fs::path& folder : AroundOf(described_in).folders) candidates.Add(folder / package);
+  return candidates.Take();
+}
+
+std::vector<std::string> PackagePath::Crawled(const std::string& package,
+                                              const std::string& described_in) const {
+  Candidates candidates;
   for (const std::string& folder : folders_) {
-    for (const std::string& found : crawl_.Named(package, folder)) add(found);
+    for (const std::string& found : crawl_.Named(package, folder)) candidates.Add(found);
   }
-  const Around around = AroundOf(described_in);
-  for (const fs::path& folder : around.folders) add(folder / package);
-  if (around.repository) {
-    for (const std::string& found : crawl_.Named(package, *around.repository)) add(found);
+  if (const auto repository = AroundOf(described_in).repository) {
+    for (const std::string& found : crawl_.Named(package, *repository)) candidates.Add(found);
   }
-  return candidates;
+  return candidates.Take();
 }
 
 std::string PackagePath::Find(const std::string& name, const std::string& described_in) const {
@@ -185,9 +202,13 @@ std::string PackagePath::Find(const std::string& name, const std::string& descri
     std::string_view rest = in_package.substr(slash);
     while (rest.starts_with('/')) rest.remove_prefix(1);
     const std::vector<std::string> files = Spellings(rest);
-    const std::vector<std::string> candidates = Candidates(package, described_in);
+    std::vector<std::string> candidates = Named(package, described_in);
     for (const std::string& candidate : candidates) {
       if (auto found = FirstThatExists(candidate, files)) return *found;
+    }
+    for (std::string& candidate : Crawled(package, described_in)) {
+      if (auto found = FirstThatExists(candidate, files)) return *found;
+      candidates.push_back(std::move(candidate));
     }
     if (!candidates.empty()) return (fs::path(candidates[0]) / files[0]).lexically_normal();
     // A clone under another name, whose package.xml is missing, too.

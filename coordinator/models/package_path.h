@@ -26,8 +26,11 @@ class PackagePath {
   std::string Find(const std::string& name, const std::string& described_in) const;
 
  private:
-  std::vector<std::string> Candidates(const std::string& package,
-                                      const std::string& described_in) const;
+  // Folders in which the package may be, the likeliest first: where its name says so, and where a
+  // look into all folders finds it.
+  std::vector<std::string> Named(const std::string& package, const std::string& described_in) const;
+  std::vector<std::string> Crawled(const std::string& package,
+                                   const std::string& described_in) const;
 
   std::vector<std::string> folders_;
   mutable PackageCrawl crawl_;

@@ -189,8 +189,9 @@ class Joints {
   // Of the joint's own <mimic>.
   void FindLeader(XMLElement* joint) {
     const XMLElement* mimic = joint->FirstChildElement("mimic");
-    const char* name = mimic == nullptr ? nullptr : mimic->Attribute("joint");
-    if (name == nullptr) return;
+    if (mimic == nullptr) return;
+    const char* name = mimic->Attribute("joint");
+    if (name == nullptr) return RemoveMimic(joint);  // a mistake, which has been said
     const auto leave_out = [&](std::string_view why) {
       Mend(why, *mimic, *joint, fmt::format("{}, and its <mimic> is left out", why));
       RemoveMimic(joint);
@@ -233,7 +234,7 @@ class Joints {
 
   void Follow(XMLElement* joint) {
     XMLElement* mimic = joint->FirstChildElement("mimic");
-    if (mimic == nullptr || mimic->Attribute("joint") == nullptr) return;
+    if (mimic == nullptr) return;
     const auto leading = LeadingOf(*joint);
     if (!leading) {
       notes_.AddMistake(LineOf(*mimic),

@@ -23,10 +23,6 @@ void UrdfNotes::AddMistake(int line, std::string_view sentence) {
   if (mistakes_.size() < kMostMistakes) mistakes_.emplace(line, Placed(line, sentence));
 }
 
-void UrdfNotes::AddMistake(const std::string& placed_sentence) {
-  if (mistakes_.size() < kMostMistakes) mistakes_.emplace(0, Visible(placed_sentence));
-}
-
 std::vector<std::string> UrdfNotes::Mistakes() const {
   std::vector<std::string> sentences;
   for (const auto& [line, sentence] : mistakes_) sentences.push_back(sentence);

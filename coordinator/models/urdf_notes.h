@@ -24,7 +24,6 @@ class UrdfNotes {
 
   // Something that has no meaning; the file is refused in the end. 20 of them are kept.
   void AddMistake(int line, std::string_view sentence);
-  void AddMistake(const std::string& placed_sentence);
   // "PATH:LINE: SENTENCE", in the order of the lines.
   std::vector<std::string> Mistakes() const;
   bool HasMistakes() const { return !mistakes_.empty(); }

@@ -133,6 +133,19 @@ TEST_F(UrdfCustomsTest, AMimicThatMeansNothingIsLeftOut) {
                                     "itself; did you mean 'j'?")));
 }
 
+TEST_F(UrdfCustomsTest, WhatFollowsAMistakeIsNoFurtherOne) {
+  const std::string text = Arm(
+      "<joint name='j' type='continuous'><parent link='base'/><child link='arm'/><mimic/></joint>",
+      Tip("continuous", kBody, "<mimic joint='j'/>"));
+  EXPECT_THAT(LoadText(folder_, text, {true}).mistakes,
+              ElementsAre(HasSubstr("<mimic> in joint 'j' has no joint")));
+  const std::string ring = Arm(JointOf("continuous", "<mimic joint='k'/>"),
+                               Tip("continuous", kBody, "<mimic joint='j'/>"));
+  EXPECT_THAT(LoadText(folder_, ring, {true}).mistakes,
+              ElementsAre(HasSubstr("joint 'j' follows itself in the end"),
+                          HasSubstr("joint 'k' follows itself in the end")));
+}
+
 TEST_F(UrdfCustomsTest, WhatFollowsAJointThatStandsIsFixed) {
   const Loaded loaded =
       Load(Arm(JointOf("fixed", ""), Tip("continuous", kBody, "<mimic joint='j' offset='0.3'/>")));
