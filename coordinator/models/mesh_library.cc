@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 #include <variant>
 
 #include "coordinator/models/file_text.h"
+#include "coordinator/models/hull_cache.h"
 #include "coordinator/models/in_child.h"
 #include "coordinator/models/mesh_hull.h"
 #include "coordinator/models/mesh_points.h"
@@ -28,8 +31,8 @@ using Triangle = std::array<std::uint32_t, 3>;
 constexpr char kWhyNotFollows = 'W';
 static_assert(kWhyNotFollows != kMeshFollows);
 
-std::string HullInFile(const std::string& path) {
-  auto read = MeshPoints(TextOf(path, kMostBytes, "a mesh"), path);
+std::string HullInFile(const std::string& text, const std::string& path) {
+  auto read = MeshPoints(text, path);
   if (const auto* why = std::get_if<std::string>(&read)) return kWhyNotFollows + *why;
   const auto& points = std::get<std::vector<Point>>(read);
   for (const Point& point : points) {
@@ -49,23 +52,36 @@ std::string HullInFile(const std::string& path) {
       fmt::format("{}: this mesh cannot be used: {}; repair or replace it", path, why)};
 }
 
+// "stl".
+std::string ReaderOf(const std::string& path) {
+  std::string end = path.substr(path.find_last_of('.') + 1);
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return end;
+}
+
 Mesh Read(const std::string& path) {
   if (!IsMeshName(path)) {
     throw ModelMistake{path + ": is not a mesh that tcs reads; give a file of .stl, .obj or .dae"};
   }
-  CheckFile(path, kMostBytes, "a mesh");
+  const std::string text = TextOf(path, kMostBytes, "a mesh");
+  const HullCache cache(text, ReaderOf(path), kMostVertices);
+  Surface hull;
+  if (Unpack(cache.Find(), kMostVertices, 2 * kMostVertices, &hull)) {
+    return {path, std::move(hull.vertices), std::move(hull.triangles)};
+  }
   constexpr std::size_t kMostSaid = 1 << 20;
-  const ChildWork done = DoInChild([&path] { return HullInFile(path); }, kMostSeconds, kMostSaid);
+  const ChildWork done = DoInChild([&] { return HullInFile(text, path); }, kMostSeconds, kMostSaid);
   if (!done.failure.empty()) Refuse(path, done.failure);
   if (!done.result.empty() && done.result[0] == kWhyNotFollows) {
     constexpr std::size_t kLongest = 200;
     const std::string shown = Quoted(std::string_view(done.result).substr(1, kLongest));
     Refuse(path, shown.substr(1, shown.size() - 2));
   }
-  Surface hull;
   if (!Unpack(done.result, kMostVertices, 2 * kMostVertices, &hull)) {
     Refuse(path, "the library that reads it fails");
   }
+  cache.Keep(done.result);
   return {path, std::move(hull.vertices), std::move(hull.triangles)};
 }
 
