@@ -424,6 +424,8 @@ RunReport Engine::Run() {
     while (run_.report.error.empty() && !run_.stop.asked()) {
       if (!Step()) break;
     }
+  } catch (const DynamicsInterrupted&) {
+    OnSignal({}, 0, {});
   } catch (const DynamicsError& error) {
     run_.report.error = error.what();
   }

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/epoll.h>
 #include <sys/prctl.h>
@@ -66,6 +67,11 @@ std::string Engine::Prepare() {
       !error.empty()) {
     return error;
   }
+  // A step that takes long is not to hold up who asks for the end.
+  world_.InterruptBy([this] {
+    pollfd asked{signal_fd_.get(), POLLIN, 0};
+    return poll(&asked, 1, 0) > 0;
+  });
   if (std::string taken = TakeCpu(); !taken.empty()) return taken;
   const int home = HomeCpu();
   state_link_.RunsOn(home);
