@@ -371,7 +371,7 @@ void ModelIslands::CheckLength(GroupIsland& of, const IslandStep& step) {
   if (of.briefest_steps < kMostBriefest) return;
   throw DynamicsError(fmt::format("{}: it takes steps of less than {} us from {:.12g} s on{}",
                                   NameOf(step.island), kBriefest.ns() / 1000, step.at.seconds(),
-                                  RemedyFor(engine_->SuspectOf(step.island))));
+                                  RemedyFor(*engine_, step.island)));
 }
 
 // At the end of the step, or half way there.

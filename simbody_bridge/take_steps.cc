@@ -12,7 +12,7 @@ namespace {
 [[noreturn]] void ThrowDiverged(IslandEngine& engine, int island, const std::string& who,
                                 double by_s) {
   throw DynamicsError(fmt::format("{}: its motion has diverged by {:.12g} s{}", who, by_s,
-                                  RemedyFor(engine.SuspectOf(island))));
+                                  RemedyFor(engine, island)));
 }
 
 // With steps of a set length engines take whatever comes out of one, and stumble over it only in
@@ -37,9 +37,9 @@ void TakeEachStep(IslandEngine& engine, std::span<IslandStep* const> steps,
     } catch (const DynamicsError&) {
       throw;
     } catch (const std::exception& e) {
-      throw DynamicsError(fmt::format(
-          "{}: the integration from {:.12g} s on failed: {}{}", who(step->island, step->from),
-          step->at.seconds(), OnOneLine(e.what()), RemedyFor(engine.SuspectOf(step->island))));
+      throw DynamicsError(fmt::format("{}: the integration from {:.12g} s on failed: {}{}",
+                                      who(step->island, step->from), step->at.seconds(),
+                                      OnOneLine(e.what()), RemedyFor(engine, step->island)));
     }
     Check(engine, *step, who);
   }
@@ -47,12 +47,13 @@ void TakeEachStep(IslandEngine& engine, std::span<IslandStep* const> steps,
 
 }  // namespace
 
-std::string RemedyFor(const std::string& suspect) {
+std::string RemedyFor(IslandEngine& engine, int island) {
+  const std::string suspect = engine.SuspectOf(island);
   if (suspect.empty()) return {};
   return fmt::format(
-      "; {} is too stiff or too light for the steps: give it more inertia or damping, or a softer "
-      "servo, or shorter steps (dynamics: {{step: 100us}})",
-      suspect);
+      "; {} is too fast, too stiff or too light for any step: give it more inertia or damping, or "
+      "what drives it less stiffness{}",
+      suspect, engine.has_set_steps() ? ", or take shorter steps (dynamics: {step: 100us})" : "");
 }
 
 void CheckState(IslandEngine& engine, int island, std::span<const double> state, VirtualTime t,

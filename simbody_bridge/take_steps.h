@@ -13,8 +13,8 @@ namespace tcs {
 // Says whose motion it is that has diverged in a state of the island.
 using WhoDiverged = std::function<std::string(int island, std::span<const double> state)>;
 
-// What to do about a joint, or whatever is suspected; with a semicolon before it.
-std::string RemedyFor(const std::string& suspect);
+// What to do about whatever the engine suspects, with a semicolon before it; empty: nobody knows.
+std::string RemedyFor(IslandEngine& engine, int island);
 
 // Throws DynamicsError.
 void TakeSteps(IslandEngine& engine, std::span<IslandStep* const> steps, const WhoDiverged& who);

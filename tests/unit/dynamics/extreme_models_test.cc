@@ -75,5 +75,18 @@ TEST_P(ExtremeModels, WithAJointThatCannotMoveMove) {
   }
 }
 
+#ifdef TCS_HAS_MUJOCO
+TEST(RefusedModels, AreNamedWithTheirJoint) {
+  try {
+    MakeDynamics(WorldOf({ArmWithTip(MassAt(1e-20, {}, 1e-6))}, {.engine = EngineKind::kMujoco}));
+    ADD_FAILURE() << "accepted";
+  } catch (const DynamicsError& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("model 'pendulum': MuJoCo refuses it: what joint "
+                                                  "'tip' moves: "));
+    EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));
+  }
+}
+#endif
+
 }  // namespace
 }  // namespace tcs
