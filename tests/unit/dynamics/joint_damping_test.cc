@@ -55,7 +55,16 @@ class OwnDamping : public EveryModelEngine {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Engines, OwnDamping, testing::ValuesIn(ModelEngines()), NameOfEngine);
+std::vector<IntegratorSpec> EnginesAndSteps() {
+  std::vector<IntegratorSpec> engines = ModelEngines();
+  engines.push_back({.fixed_step = VirtualDuration::Milliseconds(5)});
+  return engines;
+}
+
+INSTANTIATE_TEST_SUITE_P(Engines, OwnDamping, testing::ValuesIn(EnginesAndSteps()),
+                         [](const auto& info) {
+                           return NameOfEngine(info) + (info.param.fixed_step.ns() > 0 ? "Steps" : "");
+                         });
 
 TEST_P(OwnDamping, LetsAJointRunOut) {
   constexpr double kDamping = 2, kSpeed = 3;
