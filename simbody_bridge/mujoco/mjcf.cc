@@ -37,6 +37,9 @@ class Writer {
     for (const double friction : frictions) {
       priority_.emplace(friction, static_cast<int>(priority_.size()));
     }
+    for (const ForestShape& shape : forest.shapes) {
+      has_rolls_ = has_rolls_ || std::holds_alternative<CylinderShape>(shape.shape->geometry);
+    }
     children_.resize(forest.bodies.size() + 1);
     for (std::size_t i = 0; i < forest.bodies.size(); ++i) {
       children_[static_cast<std::size_t>(forest.bodies[i].parent + 1)].push_back(i);
@@ -172,9 +175,23 @@ class Writer {
       const ForestShape& shape = forest_.shapes[i];
       if (shape.body != body || shape.model != model) continue;
       // Of two geoms that touch the friction of the one with the higher priority acts: the smaller.
-      text_ += fmt::format("<geom name='s{}' {} {} friction='{:.17g} 0.005 0.0001' priority='{}'/>",
-                           i, TextOf(shape.shape->geometry), PlaceText(shape.pose),
-                           shape.shape->friction, priority_.at(shape.shape->friction));
+      const Geometry& geometry = shape.shape->geometry;
+      const std::string rest =
+          fmt::format("{} friction='{:.17g} 0.005 0.0001' priority='{}'/>", PlaceText(shape.pose),
+                      shape.shape->friction, priority_.at(shape.shape->friction));
+      const bool is_flat = std::holds_alternative<PlaneShape>(geometry) ||
+                           std::holds_alternative<BoxShape>(geometry);
+      text_ += fmt::format("<geom name='s{}' {} {}{}", i, TextOf(geometry),
+                           has_rolls_ && is_flat ? "contype='3' " : "", rest);
+      // MuJoCo has a cylinder touch by its rims; a wheel would turn round one of these, as if the
+      // wheels were nearer to each other by their width. What is flat meets its middle, too.
+      if (const auto* cylinder = std::get_if<CylinderShape>(&geometry)) {
+        constexpr double kMiddle = 0.1;
+        text_ += fmt::format(
+            "<geom name='d{}' type='cylinder' size='{:.17g} {:.17g}' contype='0' conaffinity='2' "
+            "{}",
+            i, cylinder->radius_m, kMiddle * cylinder->length_m / 2, rest);
+      }
     }
   }
 
@@ -250,6 +267,7 @@ class Writer {
   }
 
   const Forest& forest_;
+  bool has_rolls_ = false;                          // cylinders
   std::map<double, int> priority_;                  // of each friction
   std::vector<std::vector<std::size_t>> children_;  // of the world, then of each body
   std::map<const Mesh*, std::size_t> meshes_;

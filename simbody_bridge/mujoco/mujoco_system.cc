@@ -119,9 +119,11 @@ void MujocoSystem::FindIds() {
     positions_.push_back(joint < 0 ? -1 : model_->jnt_qposadr[joint]);
     speeds_.push_back(joint < 0 ? -1 : model_->jnt_dofadr[joint]);
   }
-  shapes_.resize(forest_.shapes.size());
-  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+  shapes_.resize(static_cast<std::size_t>(model_->ngeom));
+  for (std::size_t i = 0; i < forest_.shapes.size(); ++i) {
     shapes_[static_cast<std::size_t>(IdOf(mjOBJ_GEOM, 's', i))] = i;
+    const int middle = IdOf(mjOBJ_GEOM, 'd', i);
+    if (middle >= 0) shapes_[static_cast<std::size_t>(middle)] = i;
   }
 }
 

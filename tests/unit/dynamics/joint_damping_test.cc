@@ -62,8 +62,9 @@ std::vector<IntegratorSpec> EnginesAndSteps() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Engines, OwnDamping, testing::ValuesIn(EnginesAndSteps()),
-                         [](const auto& info) {
-                           return NameOfEngine(info) + (info.param.fixed_step.ns() > 0 ? "Steps" : "");
+                         [](const auto& of) {
+                           return NameOfEngine(info) +
+                                  (info.param.fixed_step.ns() > 0 ? "Steps" : "");
                          });
 
 TEST_P(OwnDamping, LetsAJointRunOut) {
