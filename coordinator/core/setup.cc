@@ -68,7 +68,7 @@ std::string Engine::Prepare() {
     return error;
   }
   // A step that takes long is not to hold up who asks for the end.
-  world_.InterruptBy([this] { return HasSignal(); });
+  world_.InterruptBy([this] { return !run_.stop.asked() && HasSignal(); });
   if (std::string taken = TakeCpu(); !taken.empty()) return taken;
   const int home = HomeCpu();
   state_link_.RunsOn(home);
