@@ -8,6 +8,7 @@
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/expected.h"
 #include "coordinator/cli/print.h"
+#include "coordinator/core/world.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/visible.h"
 #include "coordinator/scenario/load.h"
@@ -36,6 +37,7 @@ const CLI::App* AddCheck(CLI::App* app, CheckArguments* arguments) {
 int SaySound(const Scenario& scenario, bool strict) {
   if (strict && !scenario.warnings.empty()) return RefuseWarnings(scenario);
   for (const std::string& warning : scenario.warnings) Say("warning: " + warning);
+  if (const std::string error = WhyNoWorld(scenario); !error.empty()) return Fail(error);
   std::size_t clients = 0;
   for (const RobotSpec& robot : scenario.robots) clients += robot.clients.size();
   const std::size_t bodies = scenario.world.has_value() ? scenario.world->bodies.size() : 0;

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 #include <variant>
 
 #include "coordinator/models/file_text.h"
+#include "coordinator/models/hull_cache.h"
 #include "coordinator/models/in_child.h"
 #include "coordinator/models/mesh_hull.h"
 #include "coordinator/models/mesh_points.h"
@@ -28,8 +31,8 @@ using Triangle = std::array<std::uint32_t, 3>;
 constexpr char kWhyNotFollows = 'W', kFlatFollows = 'F', kIsLine = 'L';
 static_assert(kWhyNotFollows != kMeshFollows && kFlatFollows != kMeshFollows);
 
-std::string HullInFile(const std::string& path) {
-  auto read = MeshPoints(TextOf(path, kMostBytes, "a mesh"), path);
+std::string HullInFile(const std::string& text, const std::string& path) {
+  auto read = MeshPoints(text, path);
   if (const auto* why = std::get_if<std::string>(&read)) return kWhyNotFollows + *why;
   const auto& points = std::get<std::vector<Point>>(read);
   for (const Point& point : points) {
@@ -50,15 +53,28 @@ std::string HullInFile(const std::string& path) {
       fmt::format("{}: this mesh cannot be used: {}; repair or replace it", path, why)};
 }
 
+// "stl".
+std::string ReaderOf(const std::string& path) {
+  std::string end = path.substr(path.find_last_of('.') + 1);
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return end;
+}
+
 // No vertices: a line or a point.
 Mesh Read(const std::string& path, bool* is_flat) {
   if (!IsMeshName(path)) {
     throw ModelMistake{path +
                        ": is not a mesh that tcs reads; give a file of .stl, .obj, .dae or .glb"};
   }
-  CheckFile(path, kMostBytes, "a mesh");
+  const std::string text = TextOf(path, kMostBytes, "a mesh");
+  const HullCache cache(text, ReaderOf(path), kMostVertices);
+  Surface hull;
+  if (Unpack(cache.Find(), kMostVertices, 2 * kMostVertices, &hull)) {
+    return {path, std::move(hull.vertices), std::move(hull.triangles)};
+  }
   constexpr std::size_t kMostSaid = 1 << 20;
-  const ChildWork done = DoInChild([&path] { return HullInFile(path); }, kMostSeconds, kMostSaid);
+  const ChildWork done = DoInChild([&] { return HullInFile(text, path); }, kMostSeconds, kMostSaid);
   if (!done.failure.empty()) Refuse(path, done.failure);
   if (!done.result.empty() && done.result[0] == kWhyNotFollows) {
     constexpr std::size_t kLongest = 200;
@@ -67,10 +83,11 @@ Mesh Read(const std::string& path, bool* is_flat) {
   }
   if (done.result == std::string(1, kIsLine)) return {path, {}, {}};
   *is_flat = done.result.starts_with(kFlatFollows);
-  Surface hull;
   if (!Unpack(done.result.substr(*is_flat ? 1 : 0), kMostVertices, 2 * kMostVertices, &hull)) {
     Refuse(path, "the library that reads it fails");
   }
+  // Of a plate it would not be known that it is one.
+  if (!*is_flat) cache.Keep(done.result);
   return {path, std::move(hull.vertices), std::move(hull.triangles)};
 }
 

@@ -79,7 +79,7 @@ std::optional<std::string> CheckMesh(const Mesh& mesh) {
       }
     }
   }
-  if (!HullOf(mesh.vertices_m).has_value()) {
+  if (!SpansVolume(mesh.vertices_m)) {
     return fmt::format("the mesh '{}' encloses nothing: it is flat", mesh.name);
   }
   return {};
