@@ -64,7 +64,7 @@ void BodyIslands::Read(VirtualTime t, VirtualTime now, std::span<const int> bodi
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Place& place = PlaceOf(bodies[i]);
     islands_[place.island].StateAt(t, &state_);
-    CheckState(static_cast<int>(place.island), state_, t,
+    CheckState(*engine_, static_cast<int>(place.island), state_, t,
                [this](int island, auto state) { return NameOf(island, state); });
     states[i] = engine_->Read(static_cast<int>(place.island), place.place, state_);
   }
@@ -76,7 +76,9 @@ void BodyIslands::Reach(VirtualTime t, VirtualTime now) {
   std::sort(moving_.begin(), moving_.end());
   moving_.erase(std::unique(moving_.begin(), moving_.end()), moving_.end());
   for (const std::size_t island : moving_) islands_[island].Settle(now);
-  for (;;) {
+  for (int round = 1;; ++round) {
+    if (is_interrupted_ && round % kStepsBetweenLooks == 0 && is_interrupted_())
+      throw DynamicsInterrupted();
     steps_.clear();
     std::size_t left = 0;
     for (const std::size_t island : moving_) {

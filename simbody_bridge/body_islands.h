@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -22,6 +23,7 @@ class BodyIslands {
 
   // Those whom steps are shared out to; outlives this.
   void UseTeam(const WorldSpec& world, Team& team);
+  void InterruptBy(const std::function<bool()>& asked) { is_interrupted_ = asked; }
 
   int count() const { return static_cast<int>(islands_.size()); }
   // As of Dynamics. Nothing before `now` matters any more.
@@ -46,6 +48,7 @@ class BodyIslands {
 
   const std::vector<std::vector<int>> members_;  // bodies of each island
   std::unique_ptr<BodyEngine> engine_;           // none where there is no body
+  std::function<bool()> is_interrupted_;         // see Dynamics::InterruptBy
   Team* team_ = nullptr;                         // where it has an engine for each:
   std::vector<std::unique_ptr<BodyEngine>> further_engines_;
   PieceCost cost_;

@@ -23,6 +23,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -200,6 +201,12 @@ class DynamicsError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Somebody asked for that (Dynamics::InterruptBy).
+class DynamicsInterrupted : public DynamicsError {
+ public:
+  DynamicsInterrupted() : DynamicsError("the integration was interrupted") {}
+};
+
 class Dynamics {
  public:
   // A saved state; restore it into the Dynamics it came from, any number of times.
@@ -222,6 +229,10 @@ class Dynamics {
   // Islands may be integrated on these processors of the host, too, beside the caller's: threads of
   // this process help where it is worth waking them. It changes no state, to the bit.
   virtual void UseProcessors(std::span<const int> cpus) = 0;
+
+  // Looks at `asked` now and then while it integrates, and throws DynamicsInterrupted where that
+  // is true. Threads that help ask, too.
+  virtual void InterruptBy(const std::function<bool()>& asked) = 0;
 
   // How many systems bodies and models are divided into; where models come near each other and
   // part, as late as they have been integrated.

@@ -6,12 +6,14 @@
 #include <array>
 #include <deque>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "simbody_bridge/model/forest.h"
 #include "simbody_bridge/model/moving_ball.h"
 #include "simbody_bridge/model_engine.h"
 #include "simbody_bridge/model_loads.h"
+#include "simbody_bridge/one_line.h"
 
 namespace tcs {
 
@@ -36,9 +38,13 @@ class ForestEngine : public ModelEngine {
     for (const int base : bases) AddFixtures(bases_[static_cast<std::size_t>(base)], &forest);
     try {
       systems_.emplace_back(forest, gravity_mps2_);
-    } catch (...) {
+    } catch (const std::exception& error) {
       forests_.pop_back();
-      throw;
+      const std::string& name = models_[static_cast<std::size_t>(models[0])].name;
+      const std::size_t others = models.size() - 1;
+      throw DynamicsError("model '" + name + "'" +
+                          (others > 0 ? " or one of " + std::to_string(others) + " with it" : "") +
+                          ": " + OnOneLine(error.what()));
     }
     loads_.emplace_back(models_, models);
     return static_cast<int>(systems_.size()) - 1;
@@ -67,6 +73,15 @@ class ForestEngine : public ModelEngine {
   const Forest& ForestOf(int island) const { return forests_[static_cast<std::size_t>(island)]; }
   System& At(int island) { return systems_[static_cast<std::size_t>(island)]; }
   ModelLoads& LoadsOn(int island) { return loads_[static_cast<std::size_t>(island)]; }
+
+  // For messages: the joint that moves a body of the island, by its name.
+  std::string NameOfBody(int island, std::size_t body) const {
+    const Forest& forest = ForestOf(island);
+    if (body >= forest.bodies.size()) return {};
+    const int joint = forest.bodies[body].joint;
+    if (joint < 0) return "its base";
+    return "joint '" + forest.joints[static_cast<std::size_t>(joint)].joint->name + "'";
+  }
 
  private:
   bool IsOf(const ModelPlace& place, std::size_t body) const {

@@ -18,6 +18,9 @@
 
 namespace tcs {
 
+// Between looks at whether an integration is to be interrupted.
+inline constexpr int kStepsBetweenLooks = 64;
+
 // How long a step is that was taken, in whole nanoseconds; 0 if it led nowhere.
 VirtualDuration LengthOf(const IslandStep& step);
 

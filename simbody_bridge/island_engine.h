@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "simbody_bridge/dynamics.h"
@@ -59,6 +60,9 @@ class IslandEngine {
 
   // Takes a step. Throws what the engine throws where it cannot; the next one may be taken then.
   virtual void Take(IslandStep& step) = 0;
+  // What most likely keeps the island from going on, where the last step of it failed or is all too
+  // short: "joint 'elbow'". Empty: nobody knows.
+  virtual std::string SuspectOf(int /*island*/) { return {}; }
   // Several, of different islands. Leads bitwise to where each of them alone would.
   virtual void TakeAll(std::span<IslandStep* const> steps) {
     for (IslandStep* step : steps) Take(*step);

@@ -30,6 +30,11 @@ class Islands : public Dynamics {
     models_.UseTeam(team_);
   }
 
+  void InterruptBy(const std::function<bool()>& asked) override {
+    bodies_.InterruptBy(asked);
+    models_.InterruptBy(asked);
+  }
+
   int island_count() const override { return bodies_.count() + models_.count(); }
   VirtualTime Now() const override { return now_; }
   void AdvanceTo(VirtualTime t) override {

@@ -18,6 +18,10 @@ namespace {
 // Of steps that the engine chooses. Whoever would have to step shorter to stay in its zone gets
 // another one.
 constexpr VirtualDuration kBrief = VirtualDuration::Milliseconds(1);
+// With so many steps in a row that are shorter than this a run comes nowhere: they take seconds of
+// real time for some milliseconds of virtual time.
+constexpr VirtualDuration kBriefest = VirtualDuration::Microseconds(1);
+constexpr int kMostBriefest = 5000;
 // So many of them a new zone is good for.
 constexpr std::int64_t kStepsInZone = 5;
 // Islands that can meet go on in windows as long as this: what they are taken beyond the time at
@@ -189,7 +193,8 @@ void ModelIslands::ReadParts(VirtualTime t, VirtualTime now, std::span<const Mod
       local_.push_back(number_in(*of.group, of.group->MemberOf(part.model), part.index));
     }
     of.island.StateAt(t, &state_);
-    CheckState(of.group->island(), state_, t, [this](int island, auto) { return NameOf(island); });
+    CheckState(*engine_, of.group->island(), state_, t,
+               [this](int island, auto) { return NameOf(island); });
     read(of, first, local_.size());
   }
 }
@@ -320,7 +325,10 @@ void ModelIslands::AdvanceAll(const std::vector<GroupIsland*>& islands, VirtualT
 // To `t`, or to where one of the models is about to leave its zone.
 void ModelIslands::Advance(GroupIsland& of, VirtualTime t) {
   of.is_leaving = false;
-  while (of.island.known_until() < t) {
+  for (int round = 1; of.island.known_until() < t; ++round) {
+    if (is_interrupted_ && round % kStepsBetweenLooks == 0 && is_interrupted_()) {
+      throw DynamicsInterrupted();
+    }
     VirtualDuration most = kAnyLength;
     if (Meets(of)) {
       const double stays_s = TimeToLeave(of, of.island.StateAtFrontier());
@@ -339,7 +347,7 @@ void ModelIslands::Take(GroupIsland& of, IslandStep& step) {
   const WhoDiverged who = [this](int island, auto) { return NameOf(island); };
   if (engine_->has_set_steps()) {
     // Where it leads is computed when somebody needs it: a command may come before.
-    CheckState(step.island, step.from, step.at, who);
+    CheckState(*engine_, step.island, step.from, step.at, who);
     step.length_s = step.limit.seconds();
     step.to.clear();
     of.island.Took();
@@ -352,7 +360,18 @@ void ModelIslands::Take(GroupIsland& of, IslandStep& step) {
     step.limit = std::max(kBrief, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2));
     TakeSteps(*engine_, steps, who);
   }
+  CheckLength(of, step);
   of.island.Took();
+}
+
+// What error control cuts to so short steps, again and again, never comes to its end.
+void ModelIslands::CheckLength(GroupIsland& of, const IslandStep& step) {
+  const bool is_brief = step.length_s < kBriefest.seconds() && LengthOf(step) < step.limit;
+  of.briefest_steps = is_brief ? of.briefest_steps + 1 : 0;
+  if (of.briefest_steps < kMostBriefest) return;
+  throw DynamicsError(fmt::format("{}: it takes steps of less than {} us from {:.12g} s on{}",
+                                  NameOf(step.island), kBriefest.ns() / 1000, step.at.seconds(),
+                                  RemedyFor(*engine_, step.island)));
 }
 
 // At the end of the step, or half way there.

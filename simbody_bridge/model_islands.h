@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -32,6 +33,8 @@ class ModelIslands {
 
   // Those whom islands are shared out to; outlives this.
   void UseTeam(Team& team) { team_ = &team; }
+
+  void InterruptBy(const std::function<bool()>& asked) { is_interrupted_ = asked; }
 
   int count() const { return static_cast<int>(islands_.size()); }
   const ModelParts& parts() const { return parts_; }
@@ -65,6 +68,7 @@ class ModelIslands {
     Island island;
     bool is_leaving = false;  // one of them its zone, at the island's frontier
     std::exception_ptr failure = nullptr;
+    int briefest_steps = 0;  // in a row
   };
   using Owned = std::unique_ptr<GroupIsland>;
   // When models were grouped anew.
@@ -92,6 +96,7 @@ class ModelIslands {
   void AdvanceAll(const std::vector<GroupIsland*>& islands, VirtualTime t);
   void Advance(GroupIsland& of, VirtualTime t);
   void Take(GroupIsland& of, IslandStep& step);
+  void CheckLength(GroupIsland& of, const IslandStep& step);
   bool HasLeft(GroupIsland& of, const IslandStep& step);
   double TimeToLeave(GroupIsland& of, std::span<const double> state);
   void SettleMeeting(VirtualTime t);
@@ -125,6 +130,7 @@ class ModelIslands {
   // All islands that can meet are known until here, and so is who meets before.
   VirtualTime met_until_;
 
+  std::function<bool()> is_interrupted_;  // see Dynamics::InterruptBy
   Team* team_ = nullptr;
   PieceCost cost_;  // of an island, to where all are to go
   // Memory of the functions above.

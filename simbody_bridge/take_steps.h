@@ -13,9 +13,13 @@ namespace tcs {
 // Says whose motion it is that has diverged in a state of the island.
 using WhoDiverged = std::function<std::string(int island, std::span<const double> state)>;
 
+// What to do about whatever the engine suspects, with a semicolon before it; empty: nobody knows.
+std::string RemedyFor(IslandEngine& engine, int island);
+
 // Throws DynamicsError.
 void TakeSteps(IslandEngine& engine, std::span<IslandStep* const> steps, const WhoDiverged& who);
 // Throws DynamicsError unless the island's state at `t` is one to go on from.
-void CheckState(int island, std::span<const double> state, VirtualTime t, const WhoDiverged& who);
+void CheckState(IslandEngine& engine, int island, std::span<const double> state, VirtualTime t,
+                const WhoDiverged& who);
 
 }  // namespace tcs

@@ -86,6 +86,11 @@ struct GoalNames {
   JointQuantity quantity = JointQuantity::kEffort;  // what a number is that does not say it
   bool are_wheels = false;                          // a command says how fast the robot is to go
   bool follow_trajectories = false;                 // a command is one
+  // The last so many of `names` are of joints that follow others: a command may name them, and what
+  // it says of them is left out by whoever takes it.
+  std::size_t followers = 0;
+
+  std::span<const std::string> Driven() const { return names.first(names.size() - followers); }
 };
 
 // The thread that has sent a command, and how long it had run by then, what was stolen from it

@@ -8,6 +8,7 @@
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/expected.h"
 #include "coordinator/cli/print.h"
+#include "coordinator/core/world.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/visible.h"
 #include "coordinator/scenario/load.h"
@@ -28,12 +29,15 @@ const CLI::App* AddCheck(CLI::App* app, CheckArguments* arguments) {
                    "KEY=VALUE: another value for a key of the scenario; repeatable")
       ->allow_extra_args(false);
   check->add_flag("--strict", arguments->strict, "each warning is an error, too: exit status 2");
+  check->add_flag("-v,--verbose", arguments->verbose,
+                  "list all that was mended in files of robots, where a warning names one of them");
   return check;
 }
 
 int SaySound(const Scenario& scenario, bool strict) {
   if (strict && !scenario.warnings.empty()) return RefuseWarnings(scenario);
   for (const std::string& warning : scenario.warnings) Say("warning: " + warning);
+  if (const std::string error = WhyNoWorld(scenario); !error.empty()) return Fail(error);
   std::size_t clients = 0;
   for (const RobotSpec& robot : scenario.robots) clients += robot.clients.size();
   const std::size_t bodies = scenario.world.has_value() ? scenario.world->bodies.size() : 0;
@@ -50,8 +54,12 @@ int CheckCommand(const CheckArguments& arguments) {
   overrides.set = arguments.set;
   overrides.result_directory = AbsolutePathOf("out");
   const auto checked = CheckScenario(arguments.scenario, overrides);
-  if (const auto* scenario = std::get_if<Scenario>(&checked))
+  if (const auto* scenario = std::get_if<Scenario>(&checked)) {
+    if (arguments.verbose) {
+      for (const std::string& detail : scenario->details) Say("mended: " + detail);
+    }
     return SaySound(*scenario, arguments.strict);
+  }
   for (const LoadError& mistake : std::get<std::vector<LoadError>>(checked)) Say(mistake.message);
   return kCannotRun;
 }

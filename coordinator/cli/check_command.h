@@ -17,6 +17,7 @@ struct CheckArguments {
   std::vector<std::string> overlays;  // files
   std::vector<std::string> set;       // KEY=VALUE
   bool strict = false;                // each warning is an error
+  bool verbose = false;               // each thing that a warning is about
 };
 
 // Adds the command, which fills `arguments` in when it is parsed.

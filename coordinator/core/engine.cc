@@ -425,9 +425,14 @@ RunReport Engine::Run() {
   clock_.Start();
   records_.StartAt(clock_);
   try {
-    while (run_.report.error.empty() && !run_.stop.asked()) {
+    // While only the world goes on, nobody else looks.
+    constexpr int kStepsBetweenLooksAtSignals = 64;
+    for (int step = 1; run_.report.error.empty() && !run_.stop.asked(); ++step) {
       if (!Step()) break;
+      if (step % kStepsBetweenLooksAtSignals == 0 && HasSignal()) OnSignal({}, 0, {});
     }
+  } catch (const DynamicsInterrupted&) {
+    OnSignal({}, 0, {});
   } catch (const DynamicsError& error) {
     run_.report.error = error.what();
   }

@@ -109,6 +109,7 @@ class Engine {
   void TellOfMissingRights() const;
   [[nodiscard]] std::string PrepareMemory();
   [[nodiscard]] std::string PrepareSignals();
+  bool HasSignal() const;
   [[nodiscard]] std::string PrepareHostCpu();
   std::uint64_t CounterRate() const;
   std::optional<std::uint64_t> TurnsSeed() const;

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/epoll.h>
 #include <sys/prctl.h>
@@ -66,6 +67,8 @@ std::string Engine::Prepare() {
       !error.empty()) {
     return error;
   }
+  // A step that takes long is not to hold up who asks for the end.
+  world_.InterruptBy([this] { return !run_.stop.asked() && HasSignal(); });
   if (std::string taken = TakeCpu(); !taken.empty()) return taken;
   const int home = HomeCpu();
   state_link_.RunsOn(home);
@@ -194,6 +197,11 @@ std::string Engine::PrepareMemory() {
   run_.header->notes_activity = answers_.is_open() ? 1 : 0;
   run_.header->names_by_robot = run_.scenario.network.has_value() ? 1 : 0;
   return {};
+}
+
+bool Engine::HasSignal() const {
+  pollfd asked{signal_fd_.get(), POLLIN, 0};
+  return poll(&asked, 1, 0) > 0;
 }
 
 std::string Engine::PrepareSignals() {

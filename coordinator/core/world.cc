@@ -77,7 +77,11 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const
                         DatagramWatch* watch, bool is_recorded) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
-  dynamics_ = MakeDynamics(*scenario.world);
+  try {
+    dynamics_ = MakeDynamics(*scenario.world);
+  } catch (const DynamicsError& error) {
+    return error.what();
+  }
   all_bodies_.resize(scenario.world->bodies.size());
   std::iota(all_bodies_.begin(), all_bodies_.end(), 0);
   states_.resize(all_bodies_.size());
@@ -128,6 +132,15 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const
     if (inlet->IsTerminal()) terminals_.push_back(inlet.get());
   }
   FindNextStop();
+  return {};
+}
+
+std::string WhyNoWorld(const Scenario& scenario) {
+  try {
+    if (scenario.world.has_value()) MakeDynamics(*scenario.world);
+  } catch (const DynamicsError& error) {
+    return error.what();
+  }
   return {};
 }
 

@@ -30,6 +30,9 @@
 
 namespace tcs {
 
+// Why the physics refuse the scenario's world, in one sentence; empty: they do not.
+std::string WhyNoWorld(const Scenario& scenario);
+
 class World {
  public:
   // `warn` is told of what comes in on a channel and is no command.
@@ -42,6 +45,10 @@ class World {
                                  bool is_recorded = false);
   // Other processors that a run with its turns on `home` may use, of which other runs have none; to
   // be asked before this process is bound to one.
+  // See Dynamics.
+  void InterruptBy(const std::function<bool()>& asked) {
+    if (present()) dynamics_->InterruptBy(asked);
+  }
   static std::vector<int> ProcessorsBeside(int home, int host_cpus);
   // The dynamics do (Dynamics::UseProcessors).
   void UseProcessors(const std::vector<int>& cpus);

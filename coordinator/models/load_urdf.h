@@ -1,11 +1,15 @@
 // The way from a robot's description, a URDF file, to a RobotModel.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "coordinator/models/mesh_library.h"
 #include "coordinator/models/package_path.h"
+#include "coordinator/models/urdf_notes.h"
 #include "coordinator/scenario/load_error.h"
 #include "simbody_bridge/model/robot_model.h"
 
@@ -14,17 +18,28 @@ namespace tcs {
 // What is not in the file.
 struct UrdfUse {
   bool has_fixed_base = false;
-  double friction = 0.8;  // of all shapes
+  // Of all shapes; none: what the file says, else 0.8.
+  std::optional<double> friction{};
+  // Of a file of xacro, by name.
+  std::map<std::string, std::string> xacro_arguments{};
+};
+
+struct LoadedUrdf {
+  RobotModel model;
+  std::string expanded;  // what xacro has made of the file; empty: it is none
 };
 
 // Loads and checks the URDF file `path` (absolute): CheckModel finds nothing wrong with what it
 // returns, unless it be that 0 is no position of a joint: where it starts is not in the file. Links
-// and joints are in the order of the file. The first mistake is the error, one sentence beginning
-// "PATH:LINE: " ("PATH: " where the file cannot be read at all). `warnings` gets a sentence for
-// each kind of thing in the file that is not understood, and for what is hardly meant. Meshes are
-// convex hulls. Reads the environment; not for several threads at once.
-[[nodiscard]] LoadResult<RobotModel> LoadUrdf(const std::string& path, const UrdfUse& use,
-                                              const PackagePath& packages, MeshLibrary* meshes,
-                                              std::vector<std::string>* warnings);
+// and joints are in the order of the file. What the field's other tools load is loaded, and what
+// was mended is in `remarks`. Otherwise the mistakes, as far as they can be seen at once: each a
+// sentence beginning "PATH:LINE: " ("PATH: " where the file cannot be read at all). A base that has
+// no mass is fixed. Meshes are convex hulls. A file of xacro is expanded by the machine's `xacro`,
+// if there is one. Reads the environment; not for several threads at once.
+[[nodiscard]] std::variant<LoadedUrdf, std::vector<LoadError>> LoadUrdf(const std::string& path,
+                                                                        const UrdfUse& use,
+                                                                        const PackagePath& packages,
+                                                                        MeshLibrary* meshes,
+                                                                        UrdfRemarks* remarks);
 
 }  // namespace tcs

@@ -116,4 +116,33 @@ Hull MeshHull(const std::vector<Point>& points, std::size_t most_vertices) {
   return Exact(Furthest(hull.vertices, most_vertices));
 }
 
+std::vector<Point> PlateOf(const std::vector<Point>& points) {
+  const Point& origin = points.front();
+  // Of the points the one for which `size` is largest, seen from the first one.
+  const auto furthest = [&](auto size) {
+    return *std::max_element(points.begin(), points.end(), [&](const Point& a, const Point& b) {
+      return size(Minus(a, origin)) < size(Minus(b, origin));
+    });
+  };
+  const auto square = [](const Point& v) { return Dot(v, v); };
+  const Point along = Minus(furthest(square), origin);
+  const Point across =
+      Minus(furthest([&](const Point& v) { return square(Cross(along, v)); }), origin);
+  const Point normal = Cross(along, across);
+  const double extent = std::sqrt(square(along)), area = std::sqrt(square(normal));
+  if (!(area > 1e-9 * extent * extent)) return {};
+  constexpr double kHalfOfThickness = 1.0 / 400;
+  std::vector<Point> plate;
+  for (const Point& point : points) {
+    for (const double side : {-1.0, 1.0}) {
+      Point moved = point;
+      for (std::size_t i = 0; i < 3; ++i) {
+        moved[i] += side * kHalfOfThickness * extent * normal[i] / area;
+      }
+      plate.push_back(moved);
+    }
+  }
+  return plate;
+}
+
 }  // namespace tcs

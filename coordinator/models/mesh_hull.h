@@ -18,4 +18,8 @@ struct Hull {
 // 4 r / most_vertices). Empty if the points span no volume.
 Hull MeshHull(const std::vector<std::array<double, 3>>& points, std::size_t most_vertices);
 
+// Points around those of a flat mesh, whose hull is a plate of 1/200 of their extent; none if
+// these are on a line.
+std::vector<std::array<double, 3>> PlateOf(const std::vector<std::array<double, 3>>& points);
+
 }  // namespace tcs

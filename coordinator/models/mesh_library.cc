@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 #include <variant>
 
 #include "coordinator/models/file_text.h"
+#include "coordinator/models/hull_cache.h"
 #include "coordinator/models/in_child.h"
 #include "coordinator/models/mesh_hull.h"
 #include "coordinator/models/mesh_points.h"
@@ -25,11 +28,11 @@ using Point = std::array<double, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
 // What the child says else: a word, and what follows it.
-constexpr char kWhyNotFollows = 'W';
-static_assert(kWhyNotFollows != kMeshFollows);
+constexpr char kWhyNotFollows = 'W', kFlatFollows = 'F', kIsLine = 'L';
+static_assert(kWhyNotFollows != kMeshFollows && kFlatFollows != kMeshFollows);
 
-std::string HullInFile(const std::string& path) {
-  auto read = MeshPoints(TextOf(path, kMostBytes, "a mesh"), path);
+std::string HullInFile(const std::string& text, const std::string& path) {
+  auto read = MeshPoints(text, path);
   if (const auto* why = std::get_if<std::string>(&read)) return kWhyNotFollows + *why;
   const auto& points = std::get<std::vector<Point>>(read);
   for (const Point& point : points) {
@@ -37,11 +40,12 @@ std::string HullInFile(const std::string& path) {
       if (!std::isfinite(x)) return std::string(1, kWhyNotFollows) + "a vertex in it is not finite";
     }
   }
+  if (points.empty()) return std::string(1, kWhyNotFollows) + "there is no vertex in it";
   const Hull hull = MeshHull(points, kMostVertices);
-  if (hull.vertices.empty()) {
-    return kWhyNotFollows + fmt::format("its {} vertices span no volume", points.size());
-  }
-  return Packed({hull.vertices, hull.triangles});
+  if (!hull.vertices.empty()) return Packed({hull.vertices, hull.triangles});
+  const Hull plate = MeshHull(PlateOf(points), kMostVertices);
+  if (plate.vertices.empty()) return std::string(1, kIsLine);
+  return kFlatFollows + Packed({plate.vertices, plate.triangles});
 }
 
 [[noreturn]] void Refuse(const std::string& path, std::string_view why) {
@@ -49,23 +53,41 @@ std::string HullInFile(const std::string& path) {
       fmt::format("{}: this mesh cannot be used: {}; repair or replace it", path, why)};
 }
 
-Mesh Read(const std::string& path) {
+// "stl".
+std::string ReaderOf(const std::string& path) {
+  std::string end = path.substr(path.find_last_of('.') + 1);
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return end;
+}
+
+// No vertices: a line or a point.
+Mesh Read(const std::string& path, bool* is_flat) {
   if (!IsMeshName(path)) {
-    throw ModelMistake{path + ": is not a mesh that tcs reads; give a file of .stl, .obj or .dae"};
+    throw ModelMistake{path +
+                       ": is not a mesh that tcs reads; give a file of .stl, .obj, .dae or .glb"};
   }
-  CheckFile(path, kMostBytes, "a mesh");
+  const std::string text = TextOf(path, kMostBytes, "a mesh");
+  const HullCache cache(text, ReaderOf(path), kMostVertices);
+  Surface hull;
+  if (Unpack(cache.Find(), kMostVertices, 2 * kMostVertices, &hull)) {
+    return {path, std::move(hull.vertices), std::move(hull.triangles)};
+  }
   constexpr std::size_t kMostSaid = 1 << 20;
-  const ChildWork done = DoInChild([&path] { return HullInFile(path); }, kMostSeconds, kMostSaid);
+  const ChildWork done = DoInChild([&] { return HullInFile(text, path); }, kMostSeconds, kMostSaid);
   if (!done.failure.empty()) Refuse(path, done.failure);
   if (!done.result.empty() && done.result[0] == kWhyNotFollows) {
     constexpr std::size_t kLongest = 200;
     const std::string shown = Quoted(std::string_view(done.result).substr(1, kLongest));
     Refuse(path, shown.substr(1, shown.size() - 2));
   }
-  Surface hull;
-  if (!Unpack(done.result, kMostVertices, 2 * kMostVertices, &hull)) {
+  if (done.result == std::string(1, kIsLine)) return {path, {}, {}};
+  *is_flat = done.result.starts_with(kFlatFollows);
+  if (!Unpack(done.result.substr(*is_flat ? 1 : 0), kMostVertices, 2 * kMostVertices, &hull)) {
     Refuse(path, "the library that reads it fails");
   }
+  // Of a plate it would not be known that it is one.
+  if (!*is_flat) cache.Keep(done.result);
   return {path, std::move(hull.vertices), std::move(hull.triangles)};
 }
 
@@ -86,9 +108,16 @@ std::shared_ptr<const Mesh> MeshLibrary::Take(const std::string& path, const Poi
   std::shared_ptr<const Mesh>& mesh = scaled_[{path, scale}];
   if (mesh != nullptr) return mesh;
   auto read = read_.find(path);
-  if (read == read_.end()) read = read_.emplace(path, Read(path)).first;
+  if (read == read_.end()) {
+    bool is_flat = false;
+    read = read_.emplace(path, Read(path, &is_flat)).first;
+    if (is_flat) flat_.insert(path);
+  }
+  if (read->second.vertices_m.empty()) return nullptr;
   mesh = std::make_shared<const Mesh>(Scaled(read->second, scale));
   return mesh;
 }
+
+bool MeshLibrary::IsFlat(const std::string& path) const { return flat_.contains(path); }
 
 }  // namespace tcs

@@ -36,7 +36,9 @@ std::optional<Surface> ReadLooks(const std::string& path, std::size_t most_trian
     const auto read = MeshSurface(TextOf(path, kMostLooksBytes, "a mesh"), path);
     const auto* surface = std::get_if<Surface>(&read);
     if (surface == nullptr || !IsFinite(*surface) || surface->triangles.empty()) return {};
-    return Packed(Decimated(*surface, most_triangles));
+    Surface fewer = Decimated(*surface, most_triangles);
+    fewer.colour = surface->colour;
+    return Packed(fewer);
   };
   // Of each vertex three numbers, of each triangle three indices.
   const std::size_t most_packed = 64 + most_vertices * 24 + most_triangles * 12;

@@ -1,14 +1,20 @@
 #include "coordinator/models/mesh_points.h"
 
 #include <assimp/config.h>
+#include <assimp/material.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <utility>
+
+#include "simbody_bridge/model/vectors.h"
 
 namespace tcs {
 namespace {
@@ -33,7 +39,7 @@ class NoFiles : public Assimp::IOSystem {
 
 bool IsMeshName(const std::string& path) {
   const std::string end = EndOf(path);
-  return end == ".stl" || end == ".obj" || end == ".dae";
+  return end == ".stl" || end == ".obj" || end == ".dae" || end == ".glb" || end == ".gltf";
 }
 
 namespace {
@@ -57,6 +63,35 @@ void Append(const aiMesh& mesh, const aiMatrix4x4& transform, bool with_triangle
   }
 }
 
+// Of the file's own materials. STL and OBJ have none here: theirs are in other files.
+std::optional<std::array<double, 3>> ColourOf(const aiScene& scene, const aiMesh& mesh) {
+  if (mesh.mMaterialIndex >= scene.mNumMaterials) return {};
+  const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
+  aiColor4D colour;
+  if (material.Get(AI_MATKEY_BASE_COLOR, colour) != AI_SUCCESS &&
+      material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) != AI_SUCCESS) {
+    return {};
+  }
+  std::array<double, 3> parts = {colour.r, colour.g, colour.b};
+  for (double& part : parts) {
+    if (!std::isfinite(part)) return {};
+    part = std::clamp(part, 0.0, 1.0);
+  }
+  return parts;
+}
+
+// Of the triangles of a surface from the number `first` on.
+double AreaFrom(const Surface& surface, std::size_t first) {
+  double area = 0;
+  for (std::size_t i = first; i < surface.triangles.size(); ++i) {
+    const auto& [a, b, c] = surface.triangles[i];
+    const auto across = Cross(Minus(surface.vertices[b], surface.vertices[a]),
+                              Minus(surface.vertices[c], surface.vertices[a]));
+    area += std::sqrt(Dot(across, across)) / 2;
+  }
+  return area;
+}
+
 std::variant<Surface, std::string> Read(const std::string& text, const std::string& path,
                                         bool with_triangles) {
   Assimp::Importer importer;
@@ -67,18 +102,28 @@ std::variant<Surface, std::string> Read(const std::string& text, const std::stri
   if (scene == nullptr) return std::string("it cannot be read: ") + importer.GetErrorString();
   if (scene->mRootNode == nullptr) return "there is nothing in it";
   Surface surface;
+  const std::string end = EndOf(path);
+  const bool has_colours = with_triangles && end != ".stl" && end != ".obj";
+  std::map<std::array<double, 3>, double> areas;  // of each colour
   std::vector<std::pair<const aiNode*, aiMatrix4x4>> to_do = {{scene->mRootNode, aiMatrix4x4()}};
   while (!to_do.empty()) {
     const auto [node, above] = to_do.back();
     to_do.pop_back();
     const aiMatrix4x4 transform = above * node->mTransformation;
     for (unsigned i = 0; i < node->mNumMeshes; ++i) {
-      Append(*scene->mMeshes[node->mMeshes[i]], transform, with_triangles, &surface);
+      const aiMesh& mesh = *scene->mMeshes[node->mMeshes[i]];
+      const std::size_t first = surface.triangles.size();
+      Append(mesh, transform, with_triangles, &surface);
+      const auto colour = has_colours ? ColourOf(*scene, mesh) : std::nullopt;
+      if (colour) areas[*colour] += AreaFrom(surface, first);
     }
     for (unsigned i = 0; i < node->mNumChildren; ++i) {
       to_do.emplace_back(node->mChildren[i], transform);
     }
   }
+  const auto largest = std::ranges::max_element(
+      areas, {}, [](const auto& colour_and_area) { return colour_and_area.second; });
+  if (largest != areas.end()) surface.colour = largest->first;
   return surface;
 }
 

@@ -12,13 +12,13 @@ namespace tcs {
 
 // All vertices of a mesh, in metres (COLLADA's unit is applied), along the file's own axes, as ROS
 // takes them: an up axis is not turned. `text` is what is in the file, the end of whose name,
-// `path`, says whether it is STL, OBJ or COLLADA. No other file is opened. By assimp, which may not
-// survive what is in it: call it in a process of its own (in_child.h). Half a sentence where it
-// cannot be read.
+// `path`, says whether it is STL, OBJ, COLLADA or glTF. No other file is opened. By assimp, which
+// may not survive what is in it: call it in a process of its own (in_child.h). Half a sentence
+// where it cannot be read.
 [[nodiscard]] std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(
     const std::string& text, const std::string& path);
 
-// The same with its triangles; polygons are made of them.
+// The same with its triangles; polygons are made of them. COLLADA and glTF have a colour.
 [[nodiscard]] std::variant<Surface, std::string> MeshSurface(const std::string& text,
                                                              const std::string& path);
 

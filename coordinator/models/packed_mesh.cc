@@ -1,5 +1,6 @@
 #include "coordinator/models/packed_mesh.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace tcs {
@@ -17,6 +18,9 @@ std::string Packed(const Surface& surface) {
   packed.append(reinterpret_cast<const char*>(surface.vertices.data()), sizes[0] * sizeof(Point));
   packed.append(reinterpret_cast<const char*>(surface.triangles.data()),
                 sizes[1] * sizeof(Triangle));
+  if (surface.colour) {
+    packed.append(reinterpret_cast<const char*>(surface.colour->data()), sizeof(Point));
+  }
   return packed;
 }
 
@@ -27,7 +31,9 @@ bool Unpack(const std::string& packed, std::size_t most_vertices, std::size_t mo
   std::memcpy(sizes, packed.data() + 1, sizeof sizes);
   if (sizes[0] > most_vertices || sizes[1] > most_triangles) return false;
   const std::size_t points = sizes[0] * sizeof(Point), triangles = sizes[1] * sizeof(Triangle);
-  if (packed.size() != 1 + sizeof sizes + points + triangles) return false;
+  const std::size_t colourless = 1 + sizeof sizes + points + triangles;
+  const bool has_colour = packed.size() == colourless + sizeof(Point);
+  if (packed.size() != colourless && !has_colour) return false;
   surface->vertices.resize(sizes[0]);
   surface->triangles.resize(sizes[1]);
   const char* from = packed.data() + 1 + sizeof sizes;
@@ -38,7 +44,10 @@ bool Unpack(const std::string& packed, std::size_t most_vertices, std::size_t mo
       if (vertex >= sizes[0]) return false;
     }
   }
-  return true;
+  if (!has_colour) return true;
+  Point& colour = surface->colour.emplace();
+  std::memcpy(colour.data(), from + points + triangles, sizeof colour);
+  return std::ranges::all_of(colour, [](double part) { return part >= 0 && part <= 1; });
 }
 
 }  // namespace tcs

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@ namespace tcs {
 struct Surface {
   std::vector<std::array<double, 3>> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  // Of most of its area: red, green, blue, from 0 to 1; none where the file gives it none.
+  std::optional<std::array<double, 3>> colour{};
 };
 
 // Begins with this letter.

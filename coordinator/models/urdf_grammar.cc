@@ -10,6 +10,7 @@
 #include <optional>
 #include <string_view>
 
+#include "coordinator/models/urdf_friction.h"
 #include "coordinator/models/urdf_rules.h"
 #include "coordinator/models/urdf_xml.h"
 #include "coordinator/os/visible.h"
@@ -63,11 +64,11 @@ std::vector<std::string_view> WordsOf(std::string_view text) {
 
 class Copy {
  public:
-  Copy(const std::string& path, std::vector<std::string>* warnings)
-      : path_(path), warnings_(*warnings) {}
+  explicit Copy(UrdfNotes* notes) : notes_(*notes) {}
 
   // As deep as the rules are.
   void Take(const Rule& rule, const XMLElement& from, XMLElement* to) {
+    to->SetUserData(const_cast<XMLElement*>(&from));  // which nobody changes
     TakeAttributes(rule, from, to);
     std::map<std::string_view, const XMLElement*> first;
     std::map<std::string_view, int> counts;
@@ -80,8 +81,12 @@ class Copy {
       }
       const XMLElement* earlier = first.try_emplace(known->rule->name, child).first->second;
       if (++counts[known->rule->name] > known->most) {
-        Fail(*child, fmt::format("{} has a second <{}>, the first is on line {}; keep one of them",
-                                 OwnerOf(from), known->rule->name, earlier->GetLineNum()));
+        const std::string name = known->rule->name;
+        notes_.AddMend("second " + name, child->GetLineNum(),
+                       fmt::format("{} has a second <{}>, which is left out; the first is on line "
+                                   "{}",
+                                   OwnerOf(from), name, earlier->GetLineNum()));
+        continue;
       }
       Take(*known->rule, *child, to->InsertNewChildElement(known->rule->name));
     }
@@ -96,8 +101,8 @@ class Copy {
       const std::string also =
           more == 0 ? ""
                     : fmt::format(", as {} {} more of its kind", more == 1 ? "is" : "are", more);
-      warnings_.push_back(fmt::format("{}:{}: {} is not understood and left out{}{}", path_,
-                                      left_out.line, what, also, left_out.hint));
+      notes_.AddWarning(left_out.line, fmt::format("{} is not understood and left out{}{}", what,
+                                                   also, left_out.hint));
     }
   }
 
@@ -108,8 +113,8 @@ class Copy {
     std::string hint;
   };
 
-  [[noreturn]] void Fail(const XMLElement& element, std::string_view sentence) const {
-    FailAt(path_, element.GetLineNum(), sentence);
+  void Fail(const XMLElement& element, std::string_view sentence) {
+    notes_.AddMistake(element.GetLineNum(), sentence);
   }
 
   static const Child* Find(const Rule& rule, std::string_view name) {
@@ -125,7 +130,9 @@ class Copy {
           rule.attributes.begin(), rule.attributes.end(),
           [&](const Attribute& each) { return std::string_view(each.name) == a->Name(); });
       if (known != rule.attributes.end()) {
-        to->SetAttribute(known->name, Value(rule, *known, from, *a).c_str());
+        if (const auto value = Value(rule, *known, from, *a)) {
+          to->SetAttribute(known->name, value->c_str());
+        }
       } else if (!IsLeftOutSilently(rule, *a)) {
         std::vector<std::string> names;
         for (const Attribute& each : rule.attributes) names.emplace_back(each.name);
@@ -138,69 +145,75 @@ class Copy {
       if (HasName(rule)) {
         Fail(from,
              fmt::format("this <{0}> has no {1}; write <{0} {1}=\"…\">", rule.name, needed.name));
+        continue;
       }
       Fail(from, fmt::format("<{0}> in {1} has no {2}; write <{0} {2}=\"…\">", rule.name,
                              OwnerOf(from), needed.name));
     }
   }
 
-  std::string Value(const Rule& rule, const Attribute& attribute, const XMLElement& from,
-                    const XMLAttribute& value) const {
+  // None: a mistake.
+  std::optional<std::string> Value(const Rule& rule, const Attribute& attribute,
+                                   const XMLElement& from, const XMLAttribute& value) {
     const std::string_view text = value.Value();
-    const auto fail = [&](std::string_view what) {
-      FailAt(path_, value.GetLineNum(),
-             fmt::format("{} of <{}> in {} is {}; it must be {}", attribute.name, rule.name,
-                         OwnerOf(from), Quoted(text), what));
+    const auto mistake = [&](std::string_view what) -> std::optional<std::string> {
+      notes_.AddMistake(value.GetLineNum(),
+                        fmt::format("{} of <{}> in {} is {}; it must be {}", attribute.name,
+                                    rule.name, OwnerOf(from), Quoted(text), what));
+      return std::nullopt;
     };
     switch (attribute.kind) {
       case Kind::kName:
         return Name(attribute, from, value);
       case Kind::kFile:
-        if (text.empty()) fail("the path of a file");
+        if (text.empty()) return mistake("the path of a file");
         return std::string(text);
       case Kind::kNumber:
-      case Kind::kPositive:
       case Kind::kNotNegative: {
         const std::vector<std::string_view> words = WordsOf(text);
         const auto number = words.size() == 1 ? NumberOf(words[0]) : std::nullopt;
-        if (!number) fail("a finite number");
-        if (attribute.kind == Kind::kPositive && !(*number > 0)) fail("positive");
-        if (attribute.kind == Kind::kNotNegative && !(*number >= 0)) fail("0 or more");
+        if (!number) return mistake("a finite number");
+        if (attribute.kind == Kind::kNotNegative && !(*number >= 0)) return mistake("0 or more");
         return fmt::format("{}", *number);
       }
       case Kind::kThree:
-      case Kind::kThreePositive:
+      case Kind::kThreeNotNegative:
         break;
     }
     std::string three;
     const std::vector<std::string_view> words = WordsOf(text);
-    if (words.size() != 3) fail("three numbers, like \"0 0 1\"");
+    if (words.size() != 3) return mistake("three numbers, like \"0 0 1\"");
     for (const std::string_view word : words) {
       const auto number = NumberOf(word);
-      if (!number) fail("three finite numbers, like \"0 0 1\"");
-      if (attribute.kind == Kind::kThreePositive && !(*number > 0)) fail("three positive numbers");
+      if (!number) return mistake("three finite numbers, like \"0 0 1\"");
+      if (attribute.kind == Kind::kThreeNotNegative && !(*number >= 0)) {
+        return mistake("three numbers of 0 or more");
+      }
       three += fmt::format("{}{}", three.empty() ? "" : " ", *number);
     }
     return three;
   }
 
   // Names become names of files, topics and columns.
-  std::string Name(const Attribute& attribute, const XMLElement& from,
-                   const XMLAttribute& value) const {
+  std::optional<std::string> Name(const Attribute& attribute, const XMLElement& from,
+                                  const XMLAttribute& value) {
     constexpr std::size_t kLongest = 256;
     const std::string_view text = value.Value();
+    if (text.empty() && !attribute.is_needed) return std::nullopt;
     const bool fits = text.find_first_of(",\"") == std::string_view::npos && Visible(text) == text;
     if (text.empty() || text.size() > kLongest || !fits) {
-      FailAt(path_, value.GetLineNum(),
-             fmt::format("{} of <{}> is {}; it must be a name of 1 to {} bytes that can be shown, "
-                         "without commas and quotes",
-                         attribute.name, from.Name(), Quoted(text), kLongest));
+      notes_.AddMistake(
+          value.GetLineNum(),
+          fmt::format("{} of <{}> is {}; it must be a name of 1 to {} bytes that can be shown, "
+                      "without commas and quotes",
+                      attribute.name, from.Name(), Quoted(text), kLongest));
+      return std::nullopt;
     }
     return std::string(text);
   }
 
   void CheckCounts(const Rule& rule, const XMLElement& from,
-                   const std::map<std::string_view, int>& counts) const {
+                   const std::map<std::string_view, int>& counts) {
     for (const Child& child : rule.children) {
       if (counts.contains(child.rule->name) || child.least == 0) continue;
       Fail(from, fmt::format("{} has no <{}>; add it",
@@ -216,6 +229,7 @@ class Copy {
       Fail(from, fmt::format("<{}> in {} holds more than one shape; give each a <collision> of its "
                              "own",
                              rule.name, OwnerOf(from)));
+      return;
     }
     Fail(inside == nullptr ? from : *inside,
          fmt::format(
@@ -230,6 +244,7 @@ class Copy {
       if (name == silently) return;
     }
     if (rule.has_one_child) return;  // CheckCounts says what is wrong
+    if ((name == "gazebo" || name == "contact") && IsOnlyFriction(child)) return;
     std::vector<std::string> names;
     for (const Child& each : rule.children) names.emplace_back(each.rule->name);
     Note("<" + Quoted(name).substr(1, Quoted(name).size() - 2) + ">", child.GetLineNum(),
@@ -250,23 +265,30 @@ class Copy {
     order_.push_back(what);
   }
 
-  const std::string& path_;
-  std::vector<std::string>& warnings_;
+  UrdfNotes& notes_;
   std::map<std::string, LeftOut> left_out_;
   std::vector<std::string> order_;
 };
 
 }  // namespace
 
-std::unique_ptr<XMLDocument> UnderstoodPart(const std::string& path, const XMLDocument& document,
-                                            std::vector<std::string>* warnings) {
+std::unique_ptr<XMLDocument> UnderstoodPart(const XMLDocument& document, UrdfNotes* notes) {
   auto understood = std::make_unique<XMLDocument>();
   XMLElement* root = understood->NewElement(kRobot.name);
   understood->InsertEndChild(root);
-  Copy copy(path, warnings);
+  Copy copy(notes);
   copy.Take(kRobot, *document.RootElement(), root);
   copy.SayWhatWasLeftOut();
   return understood;
+}
+
+int LineOf(const XMLElement& understood) {
+  for (const XMLElement* e = &understood; e != nullptr; e = e->Parent()->ToElement()) {
+    if (const auto* from = static_cast<const XMLElement*>(e->GetUserData())) {
+      return from->GetLineNum();
+    }
+  }
+  return 1;
 }
 
 std::string OwnerOf(const XMLElement& element) {

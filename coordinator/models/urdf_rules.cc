@@ -7,19 +7,23 @@ const Rule kOrigin{"origin", {{"xyz", Kind::kThree, false}, {"rpy", Kind::kThree
 const Rule kMass{"mass", {{"value", Kind::kNotNegative}}};
 const Rule kInertia{"inertia",
                     {{"ixx", Kind::kNumber},
-                     {"ixy", Kind::kNumber},
-                     {"ixz", Kind::kNumber},
+                     {"ixy", Kind::kNumber, false},
+                     {"ixz", Kind::kNumber, false},
                      {"iyy", Kind::kNumber},
-                     {"iyz", Kind::kNumber},
+                     {"iyz", Kind::kNumber, false},
                      {"izz", Kind::kNumber}}};
 const Rule kInertial{"inertial", {}, {{&kOrigin, 0, 1}, {&kMass, 1, 1}, {&kInertia, 1, 1}}};
 
-const Rule kBox{"box", {{"size", Kind::kThreePositive}}};
-const Rule kSphere{"sphere", {{"radius", Kind::kPositive}}};
-const Rule kCylinder{"cylinder", {{"radius", Kind::kPositive}, {"length", Kind::kPositive}}};
+const Rule kBox{"box", {{"size", Kind::kThreeNotNegative}}};
+const Rule kSphere{"sphere", {{"radius", Kind::kNotNegative}}};
+const Rule kCylinder{"cylinder", {{"radius", Kind::kNotNegative}, {"length", Kind::kNotNegative}}};
+const Rule kCapsule{"capsule", {{"radius", Kind::kNotNegative}, {"length", Kind::kNotNegative}}};
 const Rule kMesh{"mesh", {{"filename", Kind::kFile}, {"scale", Kind::kThree, false}}};
 const Rule kGeometry{
-    "geometry", {}, {{&kBox, 0, 1}, {&kSphere, 0, 1}, {&kCylinder, 0, 1}, {&kMesh, 0, 1}}, true};
+    "geometry",
+    {},
+    {{&kBox, 0, 1}, {&kSphere, 0, 1}, {&kCylinder, 0, 1}, {&kCapsule, 0, 1}, {&kMesh, 0, 1}},
+    true};
 const Rule kCollision{
     "collision", {{"name", Kind::kName, false}}, {{&kOrigin, 0, 1}, {&kGeometry, 1, 1}}};
 }  // namespace
@@ -38,8 +42,8 @@ const Rule kAxis{"axis", {{"xyz", Kind::kThree}}};
 const Rule kLimit{"limit",
                   {{"lower", Kind::kNumber, false},
                    {"upper", Kind::kNumber, false},
-                   {"effort", Kind::kNotNegative},
-                   {"velocity", Kind::kNotNegative}}};
+                   {"effort", Kind::kNumber, false},
+                   {"velocity", Kind::kNumber, false}}};
 const Rule kDynamics{
     "dynamics", {{"damping", Kind::kNotNegative, false}, {"friction", Kind::kNotNegative, false}}};
 const Rule kMimic{"mimic",
@@ -58,7 +62,7 @@ const Rule kJoint{"joint",
                    {&kDynamics, 0, 1},
                    {&kMimic, 0, 1}}};
 const Rule kRobot{"robot",
-                  {{"name", Kind::kName}},
+                  {{"name", Kind::kName, false}},
                   {{&kLink, 1, kAnyNumber}, {&kJoint, 0, kAnyNumber}},
                   false,
                   {"material"}};

@@ -6,7 +6,7 @@
 
 namespace tcs::urdf_rules {
 
-enum class Kind { kName, kFile, kNumber, kPositive, kNotNegative, kThree, kThreePositive };
+enum class Kind { kName, kFile, kNumber, kNotNegative, kThree, kThreeNotNegative };
 
 struct Attribute {
   const char* name;

@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "coordinator/models/urdf_customs.h"
 #include "coordinator/models/urdf_grammar.h"
 #include "coordinator/models/urdf_xml.h"
 #include "coordinator/scenario/nearest.h"
@@ -16,12 +17,6 @@ namespace {
 using tinyxml2::XMLDocument;
 using tinyxml2::XMLElement;
 
-constexpr std::size_t kMostLinks = 4096;
-
-int LineOf(const std::vector<const XMLElement*>& elements, int index) {
-  return elements[static_cast<std::size_t>(index)]->GetLineNum();
-}
-
 std::string Hint(const std::string& name, const std::map<std::string, int>& names) {
   std::vector<std::string> known;
   for (const auto& [each, index] : names) known.push_back(each);
@@ -29,104 +24,100 @@ std::string Hint(const std::string& name, const std::map<std::string, int>& name
   return nearest ? "; did you mean " + Quoted(*nearest) + "?" : "; add it, or name another one";
 }
 
-// The number of the part `element`, which was not there before.
-int Enter(const std::string& path, const XMLElement& element,
-          const std::vector<const XMLElement*>& all, std::map<std::string, int>* numbers) {
-  const std::string name = element.Attribute("name");
+// The number of the part `element`, which was not there before. None: a mistake, or it has no name.
+std::optional<int> Enter(const XMLElement& element, const std::vector<const XMLElement*>& all,
+                         std::map<std::string, int>* numbers, UrdfNotes* notes) {
+  const char* name = element.Attribute("name");
+  if (name == nullptr) return std::nullopt;
   const auto [entry, is_new] = numbers->try_emplace(name, static_cast<int>(numbers->size()));
   if (is_new) return entry->second;
-  FailAt(path, element.GetLineNum(),
-         fmt::format("a second {} is named {}, the first is on line {}; rename one", element.Name(),
-                     Quoted(name), LineOf(all, entry->second)));
+  notes->AddMistake(
+      LineOf(element),
+      fmt::format("a second {} is named {}, the first is on line {}; rename one", element.Name(),
+                  Quoted(name), LineOf(*all[static_cast<std::size_t>(entry->second)])));
+  return std::nullopt;
 }
 
 }  // namespace
 
-bool HasRange(JointKind kind) {
-  return kind == JointKind::kRevolute || kind == JointKind::kPrismatic;
-}
-
-UrdfSkeleton::UrdfSkeleton(const std::string& path, const XMLDocument& document) : path_(path) {
-  CollectParts(document);
-  model_.name = document.RootElement()->Attribute("name");
-  for (const XMLElement* link : links_) AddLink(*link);
-  for (const XMLElement* joint : joints_) AddJoint(*joint);
+UrdfSkeleton::UrdfSkeleton(const XMLDocument& understood, UrdfNotes* notes) {
+  const XMLElement& robot = *understood.RootElement();
+  model_.name = robot.Attribute("name");
+  for (const XMLElement* link : PartsNamed("link", robot, notes)) AddLink(*link, notes);
+  for (const XMLElement* joint : PartsNamed("joint", robot, notes)) AddJoint(*joint, notes);
+  if (notes->HasMistakes()) return;
   FindRoot();
-  FailOnFaultOf(Rigid());
+  NoteFaultOf(Rigid(), notes);
 }
 
-void UrdfSkeleton::CollectParts(const XMLDocument& document) {
-  for (const XMLElement* e = document.RootElement()->FirstChildElement(); e != nullptr;
-       e = e->NextSiblingElement()) {
-    const std::string_view name = e->Name();
-    if (name != "link" && name != "joint") continue;
-    Elements& parts = name == "link" ? links_ : joints_;
+UrdfSkeleton::Elements UrdfSkeleton::PartsNamed(std::string_view name, const XMLElement& robot,
+                                                UrdfNotes* notes) const {
+  Elements parts;
+  for (const XMLElement* e = robot.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    if (name != e->Name()) continue;
+    if (parts.size() == kMostLinks) {
+      notes->AddMistake(
+          LineOf(*e),
+          fmt::format("this is number {} of the {}s, more than tcs takes; divide the robot into "
+                      "several",
+                      parts.size() + 1, name));
+      break;
+    }
     parts.push_back(e);
-    if (parts.size() <= kMostLinks) continue;
-    FailAt(path_, e->GetLineNum(),
-           fmt::format(
-               "this is number {} of the {}s, more than tcs takes; divide the robot into several",
-               parts.size(), name));
   }
+  return parts;
 }
 
-void UrdfSkeleton::AddLink(const XMLElement& element) {
-  Enter(path_, element, links_, &link_numbers_);
+void UrdfSkeleton::AddLink(const XMLElement& element, UrdfNotes* notes) {
+  if (!Enter(element, links_, &link_numbers_, notes)) return;
   Link link;
   link.name = element.Attribute("name");
   model_.links.push_back(link);
+  links_.push_back(&element);
 }
 
-void UrdfSkeleton::AddJoint(const XMLElement& element) {
-  Enter(path_, element, joints_, &joint_numbers_);
+void UrdfSkeleton::AddJoint(const XMLElement& element, UrdfNotes* notes) {
+  const int parent = LinkOf(element, "parent", notes), child = LinkOf(element, "child", notes);
+  const auto kind = KindOf(element, notes);
+  if (!Enter(element, joints_, &joint_numbers_, notes)) return;
   Joint joint;
   joint.name = element.Attribute("name");
-  joint.kind = KindOf(element);
-  CheckRange(element, joint.kind);
-  joint.parent = LinkOf(element, "parent");
-  joint.child = LinkOf(element, "child");
+  joint.kind = kind.value_or(JointKind::kFixed);
+  joint.parent = parent;
+  joint.child = child;
   model_.joints.push_back(joint);
+  joints_.push_back(&element);
 }
 
-JointKind UrdfSkeleton::KindOf(const XMLElement& joint) const {
-  const std::string type = joint.Attribute("type");
+std::optional<JointKind> UrdfSkeleton::KindOf(const XMLElement& joint, UrdfNotes* notes) const {
+  const char* text = joint.Attribute("type");
+  if (text == nullptr) return std::nullopt;
+  if (joint.Attribute(kLockedAt) != nullptr) return JointKind::kFixed;
+  const std::string type = text;
   std::vector<std::string> known;
   for (const auto& [name, kind] : kJointKinds) {
     if (name == type) return kind;
     known.emplace_back(name);
   }
-  FailAt(path_, joint.GetLineNum(),
-         fmt::format("{} has the unknown type {}; {}", OwnerOf(joint), Quoted(type),
-                     Suggest(type, known, "types")));
+  notes->AddMistake(LineOf(joint), fmt::format("{} has the unknown type {}; {}", OwnerOf(joint),
+                                               Quoted(type), Suggest(type, known, "types")));
+  return std::nullopt;
 }
 
-void UrdfSkeleton::CheckRange(const XMLElement& joint, JointKind kind) const {
-  if (!HasRange(kind) || joint.FirstChildElement("limit") != nullptr) return;
-  FailAt(path_, joint.GetLineNum(),
-         fmt::format(
-             "{} has no <limit>; add <limit lower=\"…\" upper=\"…\" effort=\"…\" "
-             "velocity=\"…\"/>{}",
-             OwnerOf(joint),
-             kind == JointKind::kRevolute ? ", or make it continuous if it turns for ever" : ""));
-}
-
-int UrdfSkeleton::LinkOf(const XMLElement& joint, const char* which) const {
-  const XMLElement& end = *joint.FirstChildElement(which);
-  const std::string name = end.Attribute("link");
+int UrdfSkeleton::LinkOf(const XMLElement& joint, const char* which, UrdfNotes* notes) const {
+  const XMLElement* end = joint.FirstChildElement(which);
+  const char* name = end == nullptr ? nullptr : end->Attribute("link");
+  if (name == nullptr) return -1;  // said already
   const auto found = link_numbers_.find(name);
   if (found != link_numbers_.end()) return found->second;
-  FailAt(path_, end.GetLineNum(),
-         fmt::format("{} has the {} {}, but there is no such link{}", OwnerOf(joint), which,
-                     Quoted(name), Hint(name, link_numbers_)));
+  notes->AddMistake(LineOf(*end),
+                    fmt::format("{} has the {} {}, but there is no such link{}", OwnerOf(joint),
+                                which, Quoted(name), Hint(name, link_numbers_)));
+  return -1;
 }
 
 int UrdfSkeleton::JointNamedBy(const XMLElement& element) const {
-  const std::string name = element.Attribute("joint");
-  const auto found = joint_numbers_.find(name);
-  if (found != joint_numbers_.end()) return found->second;
-  FailAt(path_, element.GetLineNum(),
-         fmt::format("{} follows {}, but there is no such joint{}", OwnerOf(element), Quoted(name),
-                     Hint(name, joint_numbers_)));
+  return joint_numbers_.at(element.Attribute("joint"));
 }
 
 // The first link that is no joint's child. Where there are several, or none, CheckModel says so.
@@ -148,13 +139,13 @@ RobotModel UrdfSkeleton::Rigid() const {
   return rigid;
 }
 
-void UrdfSkeleton::FailOnFaultOf(const RobotModel& model) const {
+void UrdfSkeleton::NoteFaultOf(const RobotModel& model, UrdfNotes* notes) const {
   const auto fault = CheckModel(model);
   if (!fault) return;
-  int line = links_[0]->Parent()->GetLineNum();
-  if (fault->joint >= 0) line = LineOf(joints_, fault->joint);
-  if (fault->link >= 0) line = LineOf(links_, fault->link);
-  FailAt(path_, line, fault->what);
+  const XMLElement* about = links_[0]->Parent()->ToElement();
+  if (fault->joint >= 0) about = joints_[static_cast<std::size_t>(fault->joint)];
+  if (fault->link >= 0) about = links_[static_cast<std::size_t>(fault->link)];
+  notes->AddMistake(LineOf(*about), fault->what);
 }
 
 }  // namespace tcs

@@ -5,13 +5,18 @@
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "coordinator/models/model_mistake.h"
+#include "coordinator/models/urdf_customs.h"
 #include "coordinator/models/urdf_grammar.h"
 #include "coordinator/models/urdf_xml.h"
+#include "simbody_bridge/model/vectors.h"
 
 namespace tcs {
 namespace {
@@ -38,15 +43,15 @@ class UrdfdomSpeech : public console_bridge::OutputHandler {
   std::string first_error_;
 };
 
-urdf::ModelInterfaceSharedPtr Parse(const UrdfSkeleton& skeleton,
-                                    const tinyxml2::XMLDocument& understood) {
+// Null: a mistake.
+urdf::ModelInterfaceSharedPtr Parse(const tinyxml2::XMLDocument& understood, UrdfNotes* notes) {
   tinyxml2::XMLPrinter printer(nullptr, true);
   understood.Print(&printer);
   const UrdfdomSpeech speech;
-  const auto parsed = urdf::parseURDF(printer.CStr());
+  auto parsed = urdf::parseURDF(printer.CStr());
   if (parsed == nullptr) {
-    FailAt(skeleton.path(), skeleton.link(0).Parent()->GetLineNum(),
-           "liburdfdom refuses this robot: " + Quoted(speech.first_error()));
+    notes->AddMistake(LineOf(*understood.RootElement()),
+                      "liburdfdom refuses this robot: " + Quoted(speech.first_error()));
   }
   return parsed;
 }
@@ -77,24 +82,37 @@ std::optional<Inertial> InertialOf(const urdf::Link& link) {
   return inertial;
 }
 
-MeshShape MeshOf(const urdf::Mesh& mesh, const UrdfSkeleton& skeleton, const XMLElement& collision,
-                 const UrdfSurroundings& surroundings) {
-  const XMLElement& element = *collision.FirstChildElement("geometry")->FirstChildElement("mesh");
-  const auto fail = [&](std::string_view why) {
-    FailAt(skeleton.path(), element.GetLineNum(), fmt::format("{}: {}", OwnerOf(element), why));
+// None: a mistake, or nothing that could collide, which is said.
+std::optional<Geometry> MeshOf(const urdf::Mesh& mesh, const XMLElement& element,
+                               const UrdfSurroundings& surroundings, UrdfNotes* notes) {
+  const auto mistake = [&](std::string_view why) {
+    notes->AddMistake(LineOf(element), fmt::format("{}: {}", OwnerOf(element), why));
+    return std::nullopt;
   };
-  if (mesh.scale.x * mesh.scale.y * mesh.scale.z == 0) fail("the scale of a mesh is 0");
+  if (mesh.scale.x * mesh.scale.y * mesh.scale.z == 0) return mistake("the scale of a mesh is 0");
   try {
-    return {surroundings.meshes.Take(surroundings.packages.Find(mesh.filename, skeleton.path()),
-                                     From(mesh.scale))};
-  } catch (const ModelMistake& mistake) {
-    fail(mistake.message);
+    const std::string path = surroundings.packages.Find(mesh.filename, surroundings.described_in);
+    const auto taken = surroundings.meshes.Take(path, From(mesh.scale));
+    if (taken == nullptr) {
+      notes->AddMend("line", LineOf(element),
+                     fmt::format("the mesh {} in {} is a point or a line and is left out of its "
+                                 "collision shapes",
+                                 path, OwnerOf(element)));
+      return std::nullopt;
+    }
+    if (surroundings.meshes.IsFlat(path)) {
+      notes->AddMend("flat mesh", LineOf(element),
+                     fmt::format("the mesh {} in {} is flat, and is taken as a plate of 1 mm", path,
+                                 OwnerOf(element)));
+    }
+    return MeshShape{taken};
+  } catch (const ModelMistake& mistaken) {
+    return mistake(mistaken.message);
   }
-  return {};
 }
 
-Geometry GeometryOf(const urdf::Geometry& geometry, const UrdfSkeleton& skeleton,
-                    const XMLElement& collision, const UrdfSurroundings& surroundings) {
+std::optional<Geometry> GeometryOf(const urdf::Geometry& geometry, const XMLElement& element,
+                                   const UrdfSurroundings& surroundings, UrdfNotes* notes) {
   switch (geometry.type) {
     case urdf::Geometry::BOX:
       return BoxShape{From(static_cast<const urdf::Box&>(geometry).dim)};
@@ -102,63 +120,82 @@ Geometry GeometryOf(const urdf::Geometry& geometry, const UrdfSkeleton& skeleton
       return SphereShape{static_cast<const urdf::Sphere&>(geometry).radius};
     case urdf::Geometry::CYLINDER: {
       const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+      if (element.BoolAttribute(kIsCapsule)) return CapsuleShape{cylinder.radius, cylinder.length};
       return CylinderShape{cylinder.radius, cylinder.length};
     }
     case urdf::Geometry::MESH:
       break;
   }
-  return MeshOf(static_cast<const urdf::Mesh&>(geometry), skeleton, collision, surroundings);
+  return MeshOf(static_cast<const urdf::Mesh&>(geometry), element, surroundings, notes);
 }
 
-Link LinkOf(const urdf::Link& from, const UrdfSkeleton& skeleton, const XMLElement& element,
-            const UrdfSurroundings& surroundings) {
+Link LinkOf(const urdf::Link& from, const XMLElement& element, const UrdfSurroundings& surroundings,
+            UrdfNotes* notes) {
   Link link;
   link.name = from.name;
   link.inertial = InertialOf(from);
   const XMLElement* collision = element.FirstChildElement("collision");
   for (const auto& each : from.collision_array) {
+    auto geometry =
+        GeometryOf(*each->geometry, *collision->FirstChildElement("geometry")->FirstChildElement(),
+                   surroundings, notes);
+    collision = collision->NextSiblingElement("collision");
+    if (!geometry) continue;
     Shape shape;
     shape.name = each->name;
-    shape.geometry = GeometryOf(*each->geometry, skeleton, *collision, surroundings);
+    shape.geometry = std::move(*geometry);
     shape.pose = From(each->origin);
-    shape.friction = surroundings.friction;
     link.shapes.push_back(std::move(shape));
-    collision = collision->NextSiblingElement("collision");
   }
   return link;
 }
 
-JointLimits LimitsOf(const urdf::Joint& from, const Joint& joint, const UrdfSkeleton& skeleton,
-                     const XMLElement& element, std::vector<std::string>* warnings) {
+JointLimits LimitsOf(const urdf::Joint& from, const Joint& joint, const XMLElement& element,
+                     UrdfNotes* notes) {
   JointLimits limits;
-  const auto warn = [&](std::string_view what) {
-    warnings->push_back(
-        fmt::format("{}:{}: {} {}", skeleton.path(), element.GetLineNum(), OwnerOf(element), what));
-  };
-  if (from.limits == nullptr || joint.kind == JointKind::kFixed) return limits;
+  const XMLElement* limit = element.FirstChildElement("limit");
+  if (from.limits == nullptr || limit == nullptr || joint.kind == JointKind::kFixed) return limits;
   if (CoordinatesOf(joint.kind) != 1) {
-    warn("has a <limit>, which means nothing for a joint of its type and is left out");
+    notes->AddMend("limit without meaning", LineOf(element),
+                   OwnerOf(element) +
+                       " has a <limit>, which means nothing for a joint of its type and is left "
+                       "out");
     return limits;
   }
-  limits.effort = from.limits->effort;
-  limits.velocity = from.limits->velocity;
-  if (!HasRange(joint.kind)) return limits;
+  if (from.limits->effort > 0) limits.effort = from.limits->effort;
+  if (from.limits->velocity > 0) limits.velocity = from.limits->velocity;
+  if (joint.kind == JointKind::kContinuous || limit->Attribute("lower") == nullptr) return limits;
   limits.lower = from.limits->lower;
   limits.upper = from.limits->upper;
-  if (limits.lower == limits.upper) {
-    warn(fmt::format("cannot move: both its limits are {}{}", limits.lower,
-                     limits.lower == 0 ? ", as they are where they are not given" : ""));
-  }
   return limits;
 }
 
+// Where a joint's child is that stands at `position`, seen from where it is at 0.
+Pose MovedBy(const std::array<double, 3>& axis, double position, bool is_prismatic) {
+  Pose pose;
+  const double length = std::sqrt(Dot(axis, axis));
+  if (!(length > 0)) return pose;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (is_prismatic) pose.position_m[i] = axis[i] / length * position;
+    if (!is_prismatic) pose.orientation_xyzw[i] = axis[i] / length * std::sin(position / 2);
+  }
+  if (!is_prismatic) pose.orientation_xyzw[3] = std::cos(position / 2);
+  return pose;
+}
+
 void TakeJoint(const urdf::Joint& from, const UrdfSkeleton& skeleton, const XMLElement& element,
-               std::vector<std::string>* warnings, Joint* joint) {
+               UrdfNotes* notes, Joint* joint) {
   joint->origin = From(from.parent_to_joint_origin_transform);
+  if (element.Attribute(kLockedAt) != nullptr) {
+    joint->origin =
+        Times(joint->origin, MovedBy(From(from.axis), element.DoubleAttribute(kLockedAt),
+                                     from.type == urdf::Joint::PRISMATIC));
+    return;
+  }
   if (joint->kind != JointKind::kFixed && joint->kind != JointKind::kFloating) {
     joint->axis = From(from.axis);
   }
-  joint->limits = LimitsOf(from, *joint, skeleton, element, warnings);
+  joint->limits = LimitsOf(from, *joint, element, notes);
   if (from.dynamics != nullptr && joint->kind != JointKind::kFixed) {
     joint->damping = from.dynamics->damping;
     joint->friction = from.dynamics->friction;
@@ -169,20 +206,68 @@ void TakeJoint(const urdf::Joint& from, const UrdfSkeleton& skeleton, const XMLE
   }
 }
 
+// What follows a leader allows it no more than its own limits do: the leader's range is what all
+// of them allow, and limits of the followers say nothing more.
+void JoinRanges(const UrdfSkeleton& skeleton, RobotModel* model, UrdfNotes* notes) {
+  for (std::size_t i = 0; i < model->joints.size(); ++i) {
+    Joint& joint = model->joints[i];
+    if (!joint.mimic.has_value()) continue;
+    const JointLimits own = joint.limits;
+    joint.limits.lower = -kNoLimit;
+    joint.limits.upper = kNoLimit;
+    const Mimic& mimic = *joint.mimic;
+    if (mimic.multiplier == 0 || (own.lower == -kNoLimit && own.upper == kNoLimit)) continue;
+    Joint& leader = model->joints[static_cast<std::size_t>(mimic.joint)];
+    double lower = (own.lower - mimic.offset) / mimic.multiplier;
+    double upper = (own.upper - mimic.offset) / mimic.multiplier;
+    if (lower > upper) std::swap(lower, upper);
+    const double common_lower = std::max(lower, leader.limits.lower);
+    const double common_upper = std::min(upper, leader.limits.upper);
+    const XMLElement& element = skeleton.joint(i);
+    const auto follows = [&] {
+      return fmt::format("{} follows joint {} with limits {} and {}", OwnerOf(element),
+                         Quoted(leader.name), own.lower, own.upper);
+    };
+    if (!(common_lower < common_upper)) {
+      notes->AddMend("fights its leader", LineOf(element),
+                     fmt::format("{} that its leader, which is between {} and {}, never takes it "
+                                 "to; they are left out",
+                                 follows(), leader.limits.lower, leader.limits.upper));
+      continue;
+    }
+    // Beyond what somebody has rounded.
+    const double tolerance = 1e-3 * (common_upper - common_lower);
+    const bool had_range =
+        leader.kind != JointKind::kContinuous && leader.limits.lower != -kNoLimit;
+    if (had_range && (common_lower > leader.limits.lower + tolerance ||
+                      common_upper < leader.limits.upper - tolerance)) {
+      notes->AddMend("narrows its leader", LineOf(element),
+                     fmt::format("{}, so its leader may go from {} to {} only", follows(),
+                                 common_lower, common_upper));
+    }
+    // A joint that turns for ever and leads one with limits does not.
+    if (leader.kind == JointKind::kContinuous) leader.kind = JointKind::kRevolute;
+    leader.limits.lower = common_lower;
+    leader.limits.upper = common_upper;
+  }
+}
+
 }  // namespace
 
 RobotModel WithValues(const UrdfSkeleton& skeleton, const tinyxml2::XMLDocument& understood,
-                      const UrdfSurroundings& surroundings, std::vector<std::string>* warnings) {
-  const urdf::ModelInterfaceSharedPtr parsed = Parse(skeleton, understood);
+                      const UrdfSurroundings& surroundings, UrdfNotes* notes) {
   RobotModel model = skeleton.model();
+  const urdf::ModelInterfaceSharedPtr parsed = Parse(understood, notes);
+  if (parsed == nullptr) return model;
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     model.links[i] =
-        LinkOf(*parsed->getLink(model.links[i].name), skeleton, skeleton.link(i), surroundings);
+        LinkOf(*parsed->getLink(model.links[i].name), skeleton.link(i), surroundings, notes);
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    TakeJoint(*parsed->getJoint(model.joints[i].name), skeleton, skeleton.joint(i), warnings,
+    TakeJoint(*parsed->getJoint(model.joints[i].name), skeleton, skeleton.joint(i), notes,
               &model.joints[i]);
   }
+  JoinRanges(skeleton, &model, notes);
   return model;
 }
 

@@ -4,10 +4,10 @@
 #include <tinyxml2.h>
 
 #include <string>
-#include <vector>
 
 #include "coordinator/models/mesh_library.h"
 #include "coordinator/models/package_path.h"
+#include "coordinator/models/urdf_notes.h"
 #include "coordinator/models/urdf_skeleton.h"
 #include "simbody_bridge/model/robot_model.h"
 
@@ -17,13 +17,13 @@ namespace tcs {
 struct UrdfSurroundings {
   const PackagePath& packages;
   MeshLibrary& meshes;
-  double friction;
+  std::string described_in;  // the file
 };
 
-// The skeleton's model with the values of `understood` (UnderstoodPart), of the same file. Throws
-// ModelMistake, "PATH:LINE: …", for a mesh that cannot be had and for what only liburdfdom objects
-// to. `warnings` gets what is hardly meant.
+// The skeleton's model with the values of `understood`, the document that it was made of. What
+// liburdfdom objects to, and a mesh that cannot be had, is a mistake in `notes`; what is hardly
+// meant, or mended, is a warning there.
 RobotModel WithValues(const UrdfSkeleton& skeleton, const tinyxml2::XMLDocument& understood,
-                      const UrdfSurroundings& surroundings, std::vector<std::string>* warnings);
+                      const UrdfSurroundings& surroundings, UrdfNotes* notes);
 
 }  // namespace tcs

@@ -102,10 +102,11 @@ std::vector<Visual> VisualsOf(const XMLElement& link) {
 
 }  // namespace
 
-std::map<std::string, std::vector<Visual>> ReadVisuals(const std::string& path) {
+std::map<std::string, std::vector<Visual>> ReadVisuals(const std::string& path,
+                                                       const std::string& expanded) {
   std::map<std::string, std::vector<Visual>> visuals;
   try {
-    const auto document = ReadUrdfXml(path);
+    const auto document = expanded.empty() ? ReadUrdfXml(path) : ParseUrdf(path, expanded);
     for (const XMLElement* link = document->RootElement()->FirstChildElement("link");
          link != nullptr; link = link->NextSiblingElement("link")) {
       if (const char* name = link->Attribute("name")) visuals[name] = VisualsOf(*link);

@@ -24,8 +24,10 @@ struct Visual {
   std::optional<std::array<double, 4>> colour_rgba{};  // 0 … 1
 };
 
-// Of each link of the file, by name. Neither the physics nor any program depends on how a robot
-// looks: what cannot be understood here, the file as a whole included, is left out without a word.
-[[nodiscard]] std::map<std::string, std::vector<Visual>> ReadVisuals(const std::string& path);
+// Of each link of the file, by name; of `expanded`, which xacro has made of it, unless that is
+// empty. Neither the physics nor any program depends on how a robot looks: what cannot be
+// understood here, the file as a whole included, is left out without a word.
+[[nodiscard]] std::map<std::string, std::vector<Visual>> ReadVisuals(
+    const std::string& path, const std::string& expanded = {});
 
 }  // namespace tcs

@@ -73,24 +73,31 @@ int LineOfXacro(const XMLElement* root) {
   std::filesystem::path expanded = path;
   expanded.replace_extension(expanded.extension() == ".xacro" ? "" : ".expanded.urdf");
   if (expanded.extension().empty()) expanded += ".urdf";
-  FailAt(
-      path, line,
-      fmt::format("xacro is not expanded here; do it once, by `xacro {} > {}`, and name that file",
-                  path, expanded.string()));
+  FailAt(path, line,
+         fmt::format(
+             "xacro is not expanded here, for there is no program `xacro` in PATH; install it, or "
+             "call `xacro {} > {}` where it is, and name that file",
+             path, expanded.string()));
 }
 
 void CheckRoot(const std::string& path, const XMLElement* root) {
   const std::string_view name = root->Name();
   if (name == "robot") return;
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kOthers = {{
-      {"sdf", "Gazebo's SDF"},
-      {"mujoco", "MuJoCo's MJCF"},
-      {"COLLADA", "a COLLADA mesh"},
-      {"launch", "a launch file"},
+  struct Other {
+    std::string_view element, what, then;
+  };
+  constexpr std::array<Other, 4> kOthers = {{
+      {"sdf", "Gazebo's SDF",
+       "give the URDF that it was made of, or convert it, as with sdf2urdf.py of pysdf"},
+      {"mujoco", "MuJoCo's MJCF",
+       "give the URDF that it was made of, or convert it, as with mjcf_urdf_simple_converter of "
+       "PyPI"},
+      {"COLLADA", "a COLLADA mesh", "give the robot as URDF, which names its meshes"},
+      {"launch", "a launch file", "give the URDF that it loads"},
   }};
-  for (const auto& [element, what] : kOthers) {
+  for (const auto& [element, what, then] : kOthers) {
     if (name != element) continue;
-    FailAt(path, root->GetLineNum(), fmt::format("this is {}; give the robot as URDF", what));
+    FailAt(path, root->GetLineNum(), fmt::format("this is {}; {}", what, then));
   }
   FailAt(path, root->GetLineNum(),
          "the first element is " + Quoted(name) + "; a URDF file has one <robot>");
@@ -99,7 +106,25 @@ void CheckRoot(const std::string& path, const XMLElement* root) {
 }  // namespace
 
 std::unique_ptr<tinyxml2::XMLDocument> ReadUrdfXml(const std::string& path) {
-  const std::string text = TextOf(path, kMostUrdfBytes, "a URDF file");
+  return ParseUrdf(path, TextOf(path, kMostUrdfBytes, "a URDF file"));
+}
+
+bool IsXacroFile(const std::string& path) {
+  try {
+    const std::string text = TextOf(path, kMostUrdfBytes, "a URDF file");
+    tinyxml2::XMLDocument document;
+    return document.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS &&
+           document.RootElement() != nullptr && LineOfXacro(document.RootElement()) > 0;
+  } catch (const ModelMistake&) {
+    return false;
+  }
+}
+
+std::unique_ptr<tinyxml2::XMLDocument> ParseUrdf(const std::string& path,
+                                                 const std::string& whole) {
+  std::string text = whole;
+  // Some have been saved with the end of a string.
+  while (text.ends_with('\0')) text.pop_back();
   if (text.find('\0') != std::string::npos) {
     throw ModelMistake{path + ": holds NUL bytes, so it is no text in UTF-8; save it as that"};
   }
@@ -109,8 +134,10 @@ std::unique_ptr<tinyxml2::XMLDocument> ReadUrdfXml(const std::string& path) {
            fmt::format("this is not valid XML: {}; correct it", WhatIsWrong(document->ErrorID())));
   }
   for (const XMLNode* node = document->FirstChild(); node != nullptr; node = node->NextSibling()) {
-    // <!DOCTYPE …>: entities that stand for others would make any size of a few lines.
+    // <!DOCTYPE … [ … ]>: entities that stand for others would make any size of a few lines. One
+    // without brackets defines none.
     if (node->ToUnknown() == nullptr) continue;
+    if (std::string_view(node->Value()).find('[') == std::string_view::npos) continue;
     FailAt(path, node->GetLineNum(),
            "a document type is declared here, whose entities are not expanded; remove it and write "
            "out what they stand for");

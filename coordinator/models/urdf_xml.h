@@ -13,6 +13,11 @@ namespace tcs {
 // defines entities, is an unexpanded xacro, or another format. Takes time and memory in proportion
 // to the file, which is of 4 MiB at most.
 std::unique_ptr<tinyxml2::XMLDocument> ReadUrdfXml(const std::string& path);
+// The same of a text. `name`: what sentences call it.
+std::unique_ptr<tinyxml2::XMLDocument> ParseUrdf(const std::string& name, const std::string& text);
+
+// Whether the file `path` can be read and is one that xacro is to expand.
+bool IsXacroFile(const std::string& path);
 
 // Throws ModelMistake, "PATH:LINE: SENTENCE".
 [[noreturn]] void FailAt(const std::string& path, int line, std::string_view sentence);

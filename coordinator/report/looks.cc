@@ -71,7 +71,13 @@ std::optional<std::size_t> Looks::Take(const std::string& path, const std::array
   }
   known->second = meshes->size();
   meshes->push_back(MeshJson(*surface));
+  if (surface->colour) colours_[*known->second] = *surface->colour;
   return known->second;
+}
+
+std::optional<std::array<double, 3>> Looks::ColourOf(std::size_t mesh) const {
+  const auto known = colours_.find(mesh);
+  return known == colours_.end() ? std::nullopt : std::optional(known->second);
 }
 
 }  // namespace tcs::report

@@ -139,6 +139,10 @@ class SceneReader {
     if (!number) return false;
     (*visual)["kind"] = "mesh";
     (*visual)["mesh"] = *number;
+    const auto own = looks_->ColourOf(*number);
+    if (own && !visual->contains("colour")) {
+      (*visual)["colour"] = {(*own)[0], (*own)[1], (*own)[2], 1.0};
+    }
     for (const char* key : {"name", "path", "scale"}) visual->erase(key);
     return true;
   }

@@ -78,6 +78,8 @@ InstrumentSpec LoadDescription(const YamlMap& map, const Scenario& scenario, Vir
   if (file == scenario.urdf_files.end()) {
     value.Fail("is " + place.model->name + ", which comes from no file; name one that has a urdf");
   }
+  const auto expanded = scenario.urdf_expanded.find(place.model->name);
+  if (expanded != scenario.urdf_expanded.end()) return DescriptionSpec{expanded->second};
   try {
     return DescriptionSpec{TextOf(file->second, kMostDescription, "a URDF file")};
   } catch (const ModelMistake& mistake) {

@@ -91,7 +91,10 @@ JointGroup LoadGroup(const YamlMap& map, const Scenario& scenario, Use use) {
   const std::size_t index = FindModel(model_value, scenario);
   const RobotModel& model = scenario.world->models[index];
   const int first = FirstJointOf(index, scenario);
-  JointGroup group{model.name, {}, {}};
+  JointGroup group{model.name, {}, {}, {}};
+  for (const Joint& joint : model.joints) {
+    if (use == Use::kDrive && joint.mimic.has_value()) group.followers.push_back(joint.name);
+  }
   if (const YamlValue* joints = map.Find("joints")) {
     for (const YamlValue& value : joints->AsList("[shoulder, elbow]")) {
       AddNamed(value, model, first, use, &group);

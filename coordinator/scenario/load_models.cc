@@ -1,15 +1,22 @@
 // `models` of a scenario file: robots from URDF files, and single bodies of one shape.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "coordinator/models/load_urdf.h"
 #include "coordinator/models/model_mistake.h"
+#include "coordinator/models/srdf.h"
 #include "coordinator/models/uniform_inertial.h"
+#include "coordinator/models/xacro.h"
 #include "coordinator/scenario/load_rotors.h"
 #include "coordinator/scenario/load_values.h"
 #include "coordinator/scenario/nearest.h"
@@ -17,6 +24,7 @@
 #include "coordinator/scenario/substitute.h"
 #include "simbody_bridge/engines.h"
 #include "simbody_bridge/model/model_check.h"
+#include "simbody_bridge/touch/overlaps.h"
 
 namespace tcs {
 namespace {
@@ -115,13 +123,17 @@ class Models {
 
   void AddRobot(const YamlMap::Entry& entry, const YamlMap& map, const YamlValue& urdf) {
     map.AllowOnly({"urdf", "at", "fixed_base", "joints", "packages", "friction", "self_collision",
-                   "linear_velocity", "angular_velocity", "touches", "rotors"});
+                   "collisions", "xacro", "linear_velocity", "angular_velocity", "touches",
+                   "rotors"});
     UrdfUse use;
     if (const YamlValue* v = map.Find("fixed_base")) use.has_fixed_base = v->AsBoolean();
     if (const YamlValue* v = map.Find("friction")) use.friction = v->AsNonNegativeNumber("");
+    if (const YamlValue* v = map.Find("xacro")) use.xacro_arguments = LoadXacro(*v);
     std::vector<std::string> packages = PackagesOf(map);
-    RobotModel model = Read(urdf, use, PackagePath(packages));
+    LoadedUrdf loaded = Read(urdf, use, PackagePath(packages));
+    RobotModel& model = loaded.model;
     model.name = entry.key;
+    if (!loaded.expanded.empty()) scenario_.urdf_expanded[model.name] = std::move(loaded.expanded);
     scenario_.urdf_packages[model.name] = std::move(packages);
     scenario_.urdf_files[model.name] = PathOf(urdf);
     if (const YamlValue* v = map.Find("at")) {
@@ -133,21 +145,51 @@ class Models {
     if (const YamlValue* v = map.Find("touches")) model.touches_models = LoadTouchesModels(*v);
     LoadVelocities(map, &model);
     LoadStart(map, &model);
+    if (const YamlValue* v = map.Find("collisions")) LoadCollisions(*v, &model);
+    if (model.has_self_collision) IgnoreOverlaps(map, &model);
     if (const YamlValue* v = map.Find("rotors")) LoadRotors(*v, &model);
     world_.models.push_back(std::move(model));
   }
 
-  RobotModel Read(const YamlValue& urdf, const UrdfUse& use, const PackagePath& packages) {
-    const std::string path = PathOf(urdf);
-    auto loaded = LoadUrdf(path, use, packages, &meshes_, &scenario_.warnings);
-    if (const auto* error = std::get_if<LoadError>(&loaded)) {
-      // Of a file as a whole it is the scenario that is to be mended.
-      if (error->message.starts_with(path + ": ")) {
-        urdf.FailPlainly(urdf.name() + ": " + error->message);
-      }
-      throw ScenarioMistake{error->message};
+  static std::map<std::string, std::string> LoadXacro(const YamlValue& value) {
+    if (!HasXacro()) {
+      value.Fail(
+          "has arguments for xacro, but there is no program `xacro` in PATH; install it, or "
+          "expand the file where it is and remove this");
     }
-    return std::get<RobotModel>(std::move(loaded));
+    std::map<std::string, std::string> arguments;
+    const YamlMap map = value.AsMap();
+    for (const YamlMap::Entry& entry : map.entries()) {
+      arguments[entry.key] = entry.value.AsText();
+    }
+    return arguments;
+  }
+
+  LoadedUrdf Read(const YamlValue& urdf, const UrdfUse& use, const PackagePath& packages) {
+    const std::string path = PathOf(urdf);
+    UrdfRemarks remarks;
+    auto loaded = LoadUrdf(path, use, packages, &meshes_, &remarks);
+    scenario_.warnings.insert(scenario_.warnings.end(), remarks.warnings.begin(),
+                              remarks.warnings.end());
+    scenario_.details.insert(scenario_.details.end(), remarks.details.begin(),
+                             remarks.details.end());
+    if (const auto* errors = std::get_if<std::vector<LoadError>>(&loaded)) {
+      // Where all are asked for, all but the last are noted here.
+      for (std::size_t i = 0; i + 1 < errors->size(); ++i) {
+        urdf.Try([&] { Refuse(urdf, path, (*errors)[i]); });
+      }
+      Refuse(urdf, path, errors->back());
+    }
+    return std::get<LoadedUrdf>(std::move(loaded));
+  }
+
+  [[noreturn]] static void Refuse(const YamlValue& urdf, const std::string& path,
+                                  const LoadError& error) {
+    // Of a file as a whole it is the scenario that is to be mended.
+    if (error.message.starts_with(path + ": ")) {
+      urdf.FailPlainly(urdf.name() + ": " + error.message);
+    }
+    throw ScenarioMistake{error.message};
   }
 
   static bool LoadTouchesModels(const YamlValue& value) {
@@ -160,7 +202,7 @@ class Models {
   }
 
   // Where the joints are at the start.
-  static void LoadStart(const YamlMap& map, RobotModel* model) {
+  void LoadStart(const YamlMap& map, RobotModel* model) {
     const YamlValue* joints = map.Find("joints");
     std::vector<std::optional<YamlValue>> places(model->joints.size());
     if (joints != nullptr) {
@@ -171,6 +213,7 @@ class Models {
         places[joint] = entry.value;
       }
     }
+    PutWithinLimits(map, places, model);
     const auto fault = CheckModel(*model);
     if (!fault) return;
     const auto& place =
@@ -178,6 +221,102 @@ class Models {
     const YamlValue& where = place ? *place : joints != nullptr ? *joints : map.place();
     where.FailPlainly(where.name() + ": " + fault->what +
                       (place || fault->joint < 0 ? "" : "; say in joints where it starts"));
+  }
+
+  // Joints of which nobody says where they start, and that may not start at 0.
+  void PutWithinLimits(const YamlMap& map, const std::vector<std::optional<YamlValue>>& said,
+                       RobotModel* model) {
+    std::string starts;
+    for (std::size_t i = 0; i < model->joints.size(); ++i) {
+      Joint& joint = model->joints[i];
+      if (said[i] || joint.mimic || CoordinatesOf(joint.kind) != 1) continue;
+      if (joint.limits.lower <= 0 && joint.limits.upper >= 0) continue;
+      const double nearest = joint.limits.lower > 0 ? joint.limits.lower : joint.limits.upper;
+      joint.initial_position = {nearest};
+      starts += fmt::format("{}{}: {}", starts.empty() ? "" : ", ", joint.name, nearest);
+    }
+    if (starts.empty()) return;
+    scenario_.warnings.push_back(map.place().place().Prefix() + map.place().name() +
+                                 ": 0 is beyond the limits of some joints, which start as near to "
+                                 "it as they may; to start them there or elsewhere, write joints: "
+                                 "{" +
+                                 starts + "}");
+  }
+
+  void LoadCollisions(const YamlValue& value, RobotModel* model) {
+    if (!model->has_self_collision) {
+      value.Fail(
+          "says which links do not collide, but none do; add self_collision: true, or remove "
+          "it");
+    }
+    const YamlMap map = value.AsMap();
+    map.AllowOnly({"ignore", "srdf"});
+    if (const YamlValue* pairs = map.Find("ignore")) {
+      for (const YamlValue& pair : pairs->AsList("[[LINK, LINK]]")) {
+        const std::vector<YamlValue> links = pair.AsList("[LINK, LINK]");
+        if (links.size() != 2) pair.Fail("does not name two links; write [LINK, LINK]");
+        Ignore(FindLink(links[0], *model), FindLink(links[1], *model), model);
+      }
+    }
+    if (const YamlValue* srdf = map.Find("srdf")) ReadSrdf(*srdf, model);
+  }
+
+  static void Ignore(int a, int b, RobotModel* model) {
+    if (a == b || Ignores(*model, a, b)) return;
+    model->ignored_pairs.push_back(std::minmax(a, b));
+  }
+
+  static int FindLink(const YamlValue& value, const RobotModel& model) {
+    const std::string name = value.AsText();
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < model.links.size(); ++i) {
+      if (model.links[i].name == name) return static_cast<int>(i);
+      known.push_back(model.links[i].name);
+    }
+    value.Fail("names the unknown link '" + name + "' of " + model.name + "; " +
+               Suggest(name, known, "links"));
+  }
+
+  // A file of MoveIt may name links of a gripper that this robot does not have.
+  void ReadSrdf(const YamlValue& srdf, RobotModel* model) {
+    std::map<std::string_view, int> links;
+    for (std::size_t i = 0; i < model->links.size(); ++i) {
+      links.emplace(model->links[i].name, static_cast<int>(i));
+    }
+    try {
+      for (const auto& [a, b] : DisabledCollisions(PathOf(srdf))) {
+        const auto first = links.find(a), second = links.find(b);
+        if (first == links.end() || second == links.end()) continue;
+        Ignore(first->second, second->second, model);
+      }
+    } catch (const ModelMistake& mistake) {
+      srdf.FailPlainly(srdf.name() + ": " + mistake.message);
+    }
+  }
+
+  // What is in each other at the start would be thrown apart.
+  void IgnoreOverlaps(const YamlMap& map, RobotModel* model) {
+    const std::vector<std::pair<int, int>> pairs = OverlappingLinks(*model);
+    if (pairs.empty()) return;
+    constexpr std::size_t kMostNamed = 8;
+    std::string named;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const auto name = [&](int link) { return model->links[static_cast<std::size_t>(link)].name; };
+      const std::string pair = "[" + name(pairs[i].first) + ", " + name(pairs[i].second) + "]";
+      if (i < kMostNamed) named += (i == 0 ? "" : ", ") + pair;
+      scenario_.details.push_back(map.place().place().Prefix() + map.place().name() +
+                                  ": the links " + pair + " overlap at the start");
+      Ignore(pairs[i].first, pairs[i].second, model);
+    }
+    scenario_.warnings.push_back(
+        map.place().place().Prefix() + map.place().name() +
+        ": links overlap at the start, and such do not collide; to say so, write collisions: "
+        "{ignore: [" +
+        named +
+        (pairs.size() > kMostNamed
+             ? fmt::format(", … ({} in all; `tcsim check -v` lists them)", pairs.size())
+             : "") +
+        "]}");
   }
 
   static std::size_t FindJoint(const YamlMap::Entry& entry, const RobotModel& model) {
@@ -284,7 +423,10 @@ class Models {
     std::array<double, 3> scale = {1, 1, 1};
     if (const YamlValue* v = map.Find("scale")) scale = LoadScale(*v);
     try {
-      return MeshShape{meshes_.Take(PathOf(what), scale)};
+      auto mesh = meshes_.Take(PathOf(what), scale);
+      if (mesh == nullptr)
+        what.Fail("is a point or a line, which nothing touches; take another one");
+      return MeshShape{std::move(mesh)};
     } catch (const ModelMistake& mistake) {
       what.FailPlainly(what.name() + ": " + mistake.message);
     }
@@ -342,6 +484,20 @@ class Models {
   MeshLibrary meshes_;
 };
 
+// A robot without collision shapes meets no floor.
+void WarnOfWhatFallsThrough(const YamlMap& map, Scenario* scenario) {
+  const WorldSpec& world = *scenario->world;
+  if (world.fixtures.empty()) return;
+  for (const RobotModel& model : world.models) {
+    const auto has_shapes = [](const Link& link) { return !link.shapes.empty(); };
+    if (model.has_fixed_base || std::ranges::any_of(model.links, has_shapes)) continue;
+    const YamlValue* place = map.Find(model.name);
+    scenario->warnings.push_back(place->place().Prefix() + place->name() +
+                                 ": no link has a collision shape, so it falls through whatever "
+                                 "is below it; add <collision> to its links");
+  }
+}
+
 }  // namespace
 
 void LoadModels(const YamlValue& value, const Variables& variables, Scenario* scenario) {
@@ -358,6 +514,7 @@ void LoadModels(const YamlValue& value, const Variables& variables, Scenario* sc
   if (map.entries().empty()) value.Fail("is empty; describe at least one model");
   Models models(variables, scenario);
   map.ForEach([&](const YamlMap::Entry& entry) { models.Add(entry); });
+  WarnOfWhatFallsThrough(map, scenario);
   // What is static needs no steps.
   if (engine.has_integrators && !scenario->world->models.empty() &&
       scenario->world->integrator.kind != IntegratorKind::kRungeKutta3) {

@@ -202,6 +202,8 @@ struct JointGroup {
   std::string model;
   std::vector<int> joints;         // as Dynamics numbers them
   std::vector<std::string> names;  // of each
+  // Of the model's joints that follow others, which nobody drives, but which commands may name.
+  std::vector<std::string> followers{};
 };
 
 // The firmware of a robot with driven wheels: what comes in is how fast it is to go.
@@ -300,6 +302,8 @@ struct Scenario {
   std::uint64_t seed = 1;
   std::optional<WorldSpec> world;                 // none: no dynamics
   std::map<std::string, std::string> urdf_files;  // of the models that come from such
+  // Of these what xacro has made of the file, where it has.
+  std::map<std::string, std::string> urdf_expanded;
   // Of these the folders, in `packages`, that their meshes' packages may be in.
   std::map<std::string, std::vector<std::string>> urdf_packages;
   std::vector<RobotSpec> robots;
@@ -319,6 +323,8 @@ struct Scenario {
   std::vector<QuantitySpec> quantities;  // that metrics and these are of
   // What can be run and is hardly what was meant: a sentence each, with its place.
   std::vector<std::string> warnings;
+  // What a warning says of one thing, of each: for `tcsim check -v`.
+  std::vector<std::string> details;
 };
 
 }  // namespace tcs

@@ -44,7 +44,13 @@ void Commands::Open(const std::vector<CommandChannelSpec>& specs, std::vector<st
         channel.targets.push_back(model + "/" + name);
       }
     };
-    if (spec.joints) add("joint", spec.joints->group.names, spec.joints->group.model);
+    if (spec.joints) {
+      const JointGroup& group = spec.joints->group;
+      add("joint", group.names, group.model);
+      channel.goal_names = group.names;
+      channel.goal_names.insert(channel.goal_names.end(), group.followers.begin(),
+                                group.followers.end());
+    }
     if (spec.rotors) add("rotor", spec.rotors->names, spec.rotors->model);
     if (spec.joints && spec.joints->setpoint_period) {
       channel.follower.emplace(spec.joints->group, *spec.joints->setpoint_period);
@@ -103,6 +109,10 @@ void Commands::Take(std::size_t channel, const CommandSent& sent,
   ++on.taken;
   ++taken_;
   for (const JointGoal& goal : goals) {
+    if (on.spec.joints && goal.joint >= on.spec.joints->group.joints.size()) {
+      LeaveFollowerOut(&on, goal);
+      continue;
+    }
     account_.Take(on.accounts[goal.joint], sent.at + on.spec.latency, sent.by);
     if (on.spec.rotors) {
       SpinRotor(on, sent.at, goal);
@@ -110,6 +120,14 @@ void Commands::Take(std::size_t channel, const CommandSent& sent,
       DriveJoint(on, sent.at, goal);
     }
   }
+}
+
+void Commands::LeaveFollowerOut(Channel* on, const JointGoal& goal) {
+  if (std::exchange(on->has_named_follower, true)) return;
+  warn_(
+      fmt::format("channel {}: commands name joint '{}', which follows another one and is driven "
+                  "by that alone: what they say of it is left out",
+                  on->spec.name, on->goal_names[goal.joint]));
 }
 
 void Commands::DriveJoint(const Channel& on, VirtualTime sent, JointGoal goal) {
@@ -204,8 +222,9 @@ void Commands::ActUntil(VirtualTime until) {
 std::optional<GoalNames> Commands::GoalsOf(std::size_t channel) const {
   const CommandChannelSpec& spec = channels_[channel].spec;
   if (spec.joints) {
-    return GoalNames{spec.joints->group.names, spec.joints->quantity,
-                     spec.joints->wheels.has_value(), spec.joints->setpoint_period.has_value()};
+    return GoalNames{channels_[channel].goal_names, spec.joints->quantity,
+                     spec.joints->wheels.has_value(), spec.joints->setpoint_period.has_value(),
+                     spec.joints->group.followers.size()};
   }
   if (spec.rotors) return GoalNames{spec.rotors->names, JointQuantity::kVelocity};
   return {};

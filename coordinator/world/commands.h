@@ -80,10 +80,14 @@ class Commands final : public CommandSink {
     CommandChannelSpec spec;
     std::vector<std::size_t> accounts{};  // of each joint or rotor
     std::vector<std::string> targets{};   // likewise, or of what is pushed
+    std::vector<std::string>
+        goal_names{};                 // of the joints that it drives, then of those that follow
+    bool has_named_follower = false;  // which has been said
     std::int64_t taken = 0, refused = 0;
     VirtualTime halts = VirtualTime::Never();  // unless a command comes before
     std::optional<TrajectoryFollower> follower{};
   };
+  void LeaveFollowerOut(Channel* on, const JointGoal& goal);
   void DriveJoint(const Channel& on, VirtualTime sent, JointGoal goal);
   void SpinRotor(const Channel& on, VirtualTime sent, const JointGoal& goal);
   void Halt(Channel* channel);

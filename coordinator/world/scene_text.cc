@@ -56,8 +56,10 @@ class SceneWriter {
     Json links = Json::array();
     const auto file = scenario_.urdf_files.find(model.name);
     const std::string urdf = file == scenario_.urdf_files.end() ? "" : file->second;
+    const auto made = scenario_.urdf_expanded.find(model.name);
     auto visuals_of =
-        urdf.empty() ? std::map<std::string, std::vector<Visual>>{} : ReadVisuals(urdf);
+        urdf.empty() ? std::map<std::string, std::vector<Visual>>{}
+                     : ReadVisuals(urdf, made == scenario_.urdf_expanded.end() ? "" : made->second);
     const auto packages = scenario_.urdf_packages.find(model.name);
     const PackagePath files(packages == scenario_.urdf_packages.end() ? std::vector<std::string>{}
                                                                       : packages->second);

@@ -42,6 +42,7 @@ class Builder {
 
   std::span<const Vector> points_;
   std::vector<Face> faces_;
+  std::vector<std::pair<int, int>> outline_;  // memory of Add
   double tolerance_ = 0;
 };
 
@@ -96,17 +97,24 @@ bool Builder::Begin() {
 }
 
 void Builder::Add(int point) {
-  std::map<std::pair<int, int>, int> outline;
+  outline_.clear();
   const auto is_seen = [&](const Face& face) { return Above(face, point) > tolerance_; };
   for (const Face& face : faces_) {
     if (!is_seen(face)) continue;
     for (std::size_t i = 0; i < 3; ++i) {
       const int from = face.corners[i], to = face.corners[(i + 1) % 3];
-      if (outline.erase({to, from}) == 0) outline[{from, to}] = 0;
+      const auto back = std::find(outline_.begin(), outline_.end(), std::pair(to, from));
+      if (back != outline_.end()) {
+        *back = outline_.back();
+        outline_.pop_back();
+      } else {
+        outline_.emplace_back(from, to);
+      }
     }
   }
   std::erase_if(faces_, is_seen);
-  for (const auto& [edge, unused] : outline) AddFace(edge.first, edge.second, point);
+  std::sort(outline_.begin(), outline_.end());
+  for (const auto& [from, to] : outline_) AddFace(from, to, point);
 }
 
 ConvexHull Builder::Take() const {
@@ -126,6 +134,8 @@ ConvexHull Builder::Take() const {
 }
 
 }  // namespace
+
+bool SpansVolume(std::span<const Vector> points) { return Builder(points).Begin(); }
 
 std::optional<ConvexHull> HullOf(std::span<const Vector> points) {
   Builder builder(points);

@@ -1,5 +1,7 @@
 #include "simbody_bridge/model/forest.h"
 
+#include <algorithm>
+
 namespace tcs {
 namespace {
 
@@ -30,6 +32,9 @@ void Plant(const RobotModel& model, int index, int first_link, Forest* forest) {
     forest->joints.push_back({&joint, Shifted(tree.body_of_joint[i], bodies), leader});
   }
   forest->has_self_collision.push_back(model.has_self_collision);
+  for (const auto& [a, b] : model.ignored_pairs) {
+    forest->ignored_pairs.emplace(first_link + a, first_link + b);
+  }
 }
 
 bool AreJoined(const Forest& forest, int a, int b) {
@@ -69,7 +74,8 @@ bool MayTouch(const Forest& forest, const ForestShape& a, const ForestShape& b) 
   if (a.body == b.body) return false;
   if (a.model != b.model) return true;
   return forest.has_self_collision[static_cast<std::size_t>(a.model)] &&
-         !AreJoined(forest, a.body, b.body);
+         !AreJoined(forest, a.body, b.body) &&
+         !forest.ignored_pairs.contains(std::minmax(a.link, b.link));
 }
 
 }  // namespace tcs

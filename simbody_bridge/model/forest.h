@@ -2,7 +2,9 @@
 // what they may touch. Both engines that have joints build from it. Pure.
 #pragma once
 
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "simbody_bridge/model/rigid_tree.h"
@@ -33,6 +35,8 @@ struct Forest {
   std::vector<ForestJoint> joints;
   std::vector<ForestShape> shapes;       // fixtures last
   std::vector<bool> has_self_collision;  // of each model
+  // Pairs of links, as ForestShape numbers them, that pass through each other; the lower one first.
+  std::set<std::pair<int, int>> ignored_pairs;
 };
 
 // Of the models of these indices among all, which have passed CheckModel.
@@ -43,7 +47,8 @@ Forest MakeForest(std::span<const RobotModel> models, std::span<const int> indic
 void AddFixtures(std::span<const StaticShape> shapes, Forest* forest);
 
 // Whether two shapes can ever be in contact: they are of different bodies, one of which moves, that
-// no joint joins; and if they are of one model, it collides with itself.
+// no joint joins; and if they are of one model, it collides with itself and does not ignore the two
+// links. Shapes without a link are of their body as a whole.
 bool MayTouch(const Forest& forest, const ForestShape& a, const ForestShape& b);
 
 }  // namespace tcs

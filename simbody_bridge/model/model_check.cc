@@ -10,6 +10,8 @@
 
 #include "simbody_bridge/model/convex_hull.h"
 #include "simbody_bridge/model/finite.h"
+#include "simbody_bridge/model/principal_axes.h"
+#include "simbody_bridge/model/rigid_tree.h"
 
 namespace tcs {
 namespace {
@@ -34,7 +36,12 @@ std::optional<std::string> CheckInertial(const Inertial& inertial) {
   const std::array<double, 6> elements = {inertial.ixx_kgm2, inertial.iyy_kgm2, inertial.izz_kgm2,
                                           inertial.ixy_kgm2, inertial.ixz_kgm2, inertial.iyz_kgm2};
   if (!AllFinite(elements)) return "its inertia must be finite";
-  const std::array<double, 3> moments = PrincipalMoments(inertial);
+  return {};
+}
+
+// Of a body: links that are fixed to each other only add to it.
+std::optional<std::string> CheckInertia(const Matrix3& inertia_kgm2) {
+  const std::array<double, 3> moments = PrincipalAxesOf(inertia_kgm2).moments;
   const auto text =
       fmt::format("({:.6g}, {:.6g}, {:.6g}) kg m^2", moments[0], moments[1], moments[2]);
   if (!(moments[0] > 0)) {
@@ -72,7 +79,7 @@ std::optional<std::string> CheckMesh(const Mesh& mesh) {
       }
     }
   }
-  if (!HullOf(mesh.vertices_m).has_value()) {
+  if (!SpansVolume(mesh.vertices_m)) {
     return fmt::format("the mesh '{}' encloses nothing: it is flat", mesh.name);
   }
   return {};
@@ -320,6 +327,23 @@ Fault CheckMasses(const RobotModel& model, const std::vector<int>& joint_above) 
   return {};
 }
 
+// Of each body, named by the first of its links that has mass.
+Fault CheckInertias(const RobotModel& model) {
+  const RigidTree tree = MakeTree(model);
+  std::vector<char> is_named(tree.bodies.size(), 0);
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const int body = tree.links[i].body;
+    if (body == kWorldBody || !model.links[i].inertial.has_value()) continue;
+    const auto index = static_cast<std::size_t>(body);
+    if (std::exchange(is_named[index], 1) != 0) continue;
+    if (const auto fault = CheckInertia(tree.bodies[index].inertia_kgm2)) {
+      return ModelFault{fmt::format("link '{}': {}", model.links[i].name, *fault),
+                        static_cast<int>(i), -1};
+    }
+  }
+  return {};
+}
+
 std::optional<std::string> CheckRotorAlone(const RobotModel& model, const Rotor& rotor) {
   if (rotor.link < 0 || rotor.link >= static_cast<int>(model.links.size())) {
     return "its link is no link of the model";
@@ -360,34 +384,11 @@ Fault CheckRoot(const RobotModel& model) {
 
 }  // namespace
 
-// By Jacobi's rotations, which find small moments beside large ones exactly.
 std::array<double, 3> PrincipalMoments(const Inertial& inertial) {
-  std::array<std::array<double, 3>, 3> m = {
-      {{inertial.ixx_kgm2, inertial.ixy_kgm2, inertial.ixz_kgm2},
-       {inertial.ixy_kgm2, inertial.iyy_kgm2, inertial.iyz_kgm2},
-       {inertial.ixz_kgm2, inertial.iyz_kgm2, inertial.izz_kgm2}}};
-  constexpr int kSweeps = 12;  // it converges quadratically: five or six do
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (const auto& [p, q] : {std::pair<std::size_t, std::size_t>{0, 1}, {0, 2}, {1, 2}}) {
-      if (m[p][q] == 0) continue;
-      const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-      const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-      const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double kp = m[k][p], kq = m[k][q];
-        m[k][p] = c * kp - s * kq;
-        m[k][q] = s * kp + c * kq;
-      }
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double pk = m[p][k], qk = m[q][k];
-        m[p][k] = c * pk - s * qk;
-        m[q][k] = s * pk + c * qk;
-      }
-    }
-  }
-  std::array<double, 3> moments = {m[0][0], m[1][1], m[2][2]};
-  std::sort(moments.begin(), moments.end());
-  return moments;
+  return PrincipalAxesOf({{{inertial.ixx_kgm2, inertial.ixy_kgm2, inertial.ixz_kgm2},
+                           {inertial.ixy_kgm2, inertial.iyy_kgm2, inertial.iyz_kgm2},
+                           {inertial.ixz_kgm2, inertial.iyz_kgm2, inertial.izz_kgm2}}})
+      .moments;
 }
 
 std::optional<std::string> CheckShape(const Shape& shape, bool is_of_world) {
@@ -427,7 +428,8 @@ std::optional<ModelFault> CheckModel(const RobotModel& model) {
     above = index;
   }
   if (auto fault = CheckTree(model, joint_above)) return fault;
-  return CheckMasses(model, joint_above);
+  if (auto fault = CheckMasses(model, joint_above)) return fault;
+  return CheckInertias(model);
 }
 
 }  // namespace tcs

@@ -1,8 +1,10 @@
 #include "simbody_bridge/model/rigid_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
+#include "simbody_bridge/model/model_check.h"
 #include "simbody_bridge/model/vectors.h"
 
 namespace tcs {
@@ -61,6 +63,22 @@ void AddMass(const Inertial& inertial, const Pose& pose, TreeBody* body) {
   }
   body->mass_kg = mass_kg;
   body->center_m = common;
+}
+
+// Flat bodies, and sums of what CAD has rounded, are just beyond what a body can have, or what an
+// engine takes for that (MuJoCo no moment below 1e-15 kg m^2): the same is added to all three
+// moments.
+void MakePossible(Matrix3* inertia) {
+  constexpr double kLeast = 1e-15, kSlack = 1e-9;
+  Inertial inertial;
+  inertial.ixx_kgm2 = (*inertia)[0][0], inertial.iyy_kgm2 = (*inertia)[1][1];
+  inertial.izz_kgm2 = (*inertia)[2][2], inertial.ixy_kgm2 = (*inertia)[0][1];
+  inertial.ixz_kgm2 = (*inertia)[0][2], inertial.iyz_kgm2 = (*inertia)[1][2];
+  const std::array<double, 3> moments = PrincipalMoments(inertial);
+  const double beyond = moments[2] - moments[0] - moments[1];
+  double missing = std::max(0.0, kLeast * (1 + kSlack) - moments[0]);
+  if (beyond > -kSlack / 2 * moments[2]) missing = std::max(missing, beyond + kSlack * moments[2]);
+  for (std::size_t i = 0; i < 3; ++i) (*inertia)[i][i] += missing;
 }
 
 Vector Unit(const Vector& v) {
@@ -161,6 +179,7 @@ RigidTree MakeTree(const RobotModel& model) {
     if (link.body == kWorldBody || !model.links[i].inertial.has_value()) continue;
     AddMass(*model.links[i].inertial, link.pose, &tree.bodies[static_cast<std::size_t>(link.body)]);
   }
+  for (TreeBody& body : tree.bodies) MakePossible(&body.inertia_kgm2);
   return tree;
 }
 

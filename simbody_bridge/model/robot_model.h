@@ -10,11 +10,13 @@
 // a model; everything else takes models that it has passed.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "shm/virtual_time.h"
@@ -123,10 +125,19 @@ struct RobotModel {
   // Links of one model pass through each other, unless this says that they collide; those that a
   // joint joins never do.
   bool has_self_collision = false;
+  // Pairs of links, by index, the lower one first, that pass through each other all the same.
+  std::vector<std::pair<int, int>> ignored_pairs;
   // Whether it collides with other models that do. If not it touches the world's fixtures alone,
   // and is integrated by itself whoever is near.
   bool touches_models = true;
 };
+
+// Whether links `a` and `b` pass through each other whatever the model does otherwise.
+inline bool Ignores(const RobotModel& model, int a, int b) {
+  const std::pair<int, int> pair = std::minmax(a, b);
+  return std::find(model.ignored_pairs.begin(), model.ignored_pairs.end(), pair) !=
+         model.ignored_pairs.end();
+}
 
 // How many numbers a joint's position and velocity have.
 constexpr std::size_t CoordinatesOf(JointKind kind) {

@@ -11,8 +11,9 @@
 namespace tcs {
 namespace {
 
-// Joints' stops and mimics are as hard as steps of 1 ms bear: time constants of four of them. With
-// contacts as hard as that a stack of boxes shakes itself down.
+// Friction of joints holds them: with MuJoCo's own softness a light joint creeps by half a radian a
+// second. Joints' stops and mimics are as hard as steps of 1 ms bear: time constants of four of
+// them. With contacts as hard as that a stack of boxes shakes itself down.
 constexpr const char* kHard = "0.004 1";
 constexpr const char* kContact = "0.01 1";
 // A contact comes in over a fifth of a millimetre. One that is as hard at once throws a caster that
@@ -36,6 +37,9 @@ class Writer {
     for (const double friction : frictions) {
       priority_.emplace(friction, static_cast<int>(priority_.size()));
     }
+    for (const ForestShape& shape : forest.shapes) {
+      has_rolls_ = has_rolls_ || std::holds_alternative<CylinderShape>(shape.shape->geometry);
+    }
     children_.resize(forest.bodies.size() + 1);
     for (std::size_t i = 0; i < forest.bodies.size(); ++i) {
       children_[static_cast<std::size_t>(forest.bodies[i].parent + 1)].push_back(i);
@@ -48,7 +52,8 @@ class Writer {
         "<option gravity='{}' integrator='RK4' cone='elliptic' impratio='100' tolerance='1e-12'>"
         "<flag multiccd='enable'/></option>"
         "<default><geom mass='0' condim='3' solref='{}' solimp='{}'/>"
-        "<joint solreflimit='{}' solimplimit='0.99 0.999 0.0001' solreffriction='{}'/></default>",
+        "<joint solreflimit='{}' solimplimit='0.99 0.999 0.0001' solreffriction='{}' "
+        "solimpfriction='0.9999 0.9999 0.001'/></default>",
         Text(gravity_mps2), kContact, kComingIn, kHard, kHard);
     WriteMeshes();
     text_ += "<worldbody>";
@@ -91,13 +96,26 @@ class Writer {
 
   void WriteBody(std::size_t index) {
     const TreeBody& body = forest_.bodies[index];
-    const Matrix3& i = body.inertia_kgm2;
+    Matrix3 i = body.inertia_kgm2;
+    // Of a whole matrix MuJoCo takes no smaller eigenvalues.
+    constexpr double kLeast = 1e-14;
+    const bool is_diagonal = i[0][1] == 0 && i[0][2] == 0 && i[1][2] == 0;
+    const bool is_tiny = i[0][0] + i[1][1] + i[2][2] < 100 * kLeast;
+    if (is_tiny && !is_diagonal) {
+      for (std::size_t k = 0; k < 3; ++k) i[k][k] += kLeast;
+    }
     text_ += fmt::format("<body name='b{}' {}>", index, PlaceText(body.origin));
     WriteJoints(index, body);
-    text_ += fmt::format(
-        "<inertial pos='{}' mass='{:.17g}' fullinertia='{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} "
-        "{:.17g}'/>",
-        Text(body.center_m), body.mass_kg, i[0][0], i[1][1], i[2][2], i[0][1], i[0][2], i[1][2]);
+    if (is_tiny && is_diagonal) {
+      text_ +=
+          fmt::format("<inertial pos='{}' mass='{:.17g}' diaginertia='{:.17g} {:.17g} {:.17g}'/>",
+                      Text(body.center_m), body.mass_kg, i[0][0], i[1][1], i[2][2]);
+    } else {
+      text_ += fmt::format(
+          "<inertial pos='{}' mass='{:.17g}' fullinertia='{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} "
+          "{:.17g}'/>",
+          Text(body.center_m), body.mass_kg, i[0][0], i[1][1], i[2][2], i[0][1], i[0][2], i[1][2]);
+    }
     WriteShapes(static_cast<int>(index), forest_.model_of_body[index]);
     text_ += fmt::format("<site name='b{}'/>", index);
     for (const std::size_t child : children_[index + 1]) WriteBody(child);
@@ -141,10 +159,13 @@ class Writer {
     if (joint.friction > 0) text_ += fmt::format(" frictionloss='{:.17g}'", joint.friction);
     const JointLimits& limits = joint.limits;
     if (limits.lower != -kNoLimit || limits.upper != kNoLimit) {
-      // MuJoCo knows ranges only, not one end without the other.
-      constexpr double kFar = 1e9;
-      text_ += fmt::format(" limited='true' range='{:.17g} {:.17g}'", std::max(limits.lower, -kFar),
-                           std::min(limits.upper, kFar));
+      // MuJoCo knows ranges only, not one end without the other, and none that is a point.
+      constexpr double kFar = 1e9, kNarrow = 1e-9;
+      const double lower = std::max(limits.lower, -kFar), upper = std::min(limits.upper, kFar);
+      const double missing =
+          std::max(0.0, kNarrow * std::max(1.0, std::abs(lower)) - (upper - lower));
+      text_ += fmt::format(" limited='true' range='{:.17g} {:.17g}'", lower - missing / 2,
+                           upper + missing / 2);
     }
     text_ += "/>";
   }
@@ -154,9 +175,23 @@ class Writer {
       const ForestShape& shape = forest_.shapes[i];
       if (shape.body != body || shape.model != model) continue;
       // Of two geoms that touch the friction of the one with the higher priority acts: the smaller.
-      text_ += fmt::format("<geom name='s{}' {} {} friction='{:.17g} 0.005 0.0001' priority='{}'/>",
-                           i, TextOf(shape.shape->geometry), PlaceText(shape.pose),
-                           shape.shape->friction, priority_.at(shape.shape->friction));
+      const Geometry& geometry = shape.shape->geometry;
+      const std::string rest =
+          fmt::format("{} friction='{:.17g} 0.005 0.0001' priority='{}'/>", PlaceText(shape.pose),
+                      shape.shape->friction, priority_.at(shape.shape->friction));
+      const bool is_flat = std::holds_alternative<PlaneShape>(geometry) ||
+                           std::holds_alternative<BoxShape>(geometry);
+      text_ += fmt::format("<geom name='s{}' {} {}{}", i, TextOf(geometry),
+                           has_rolls_ && is_flat ? "contype='3' " : "", rest);
+      // MuJoCo has a cylinder touch by its rims; a wheel would turn round one of these, as if the
+      // wheels were nearer to each other by their width. What is flat meets its middle, too.
+      if (const auto* cylinder = std::get_if<CylinderShape>(&geometry)) {
+        constexpr double kMiddle = 0.1;
+        text_ += fmt::format(
+            "<geom name='d{}' type='cylinder' size='{:.17g} {:.17g}' contype='0' conaffinity='2' "
+            "{}",
+            i, cylinder->radius_m, kMiddle * cylinder->length_m / 2, rest);
+      }
     }
   }
 
@@ -214,24 +249,57 @@ class Writer {
     text_ += "</actuator>";
   }
 
+  // MuJoCo leaves out pairs of bodies only. Of bodies of which some links are to pass through each
+  // other and others not, these are paired by name.
   void WriteExclusions() {
     text_ += "<contact>";
+    std::set<std::pair<int, int>> apart;  // bodies
+    for (const auto& pair : forest_.ignored_pairs) PairWhatTouches(pair, &apart);
     const int bodies = static_cast<int>(forest_.bodies.size());
     for (int a = 0; a < bodies; ++a) {
       const int model = forest_.model_of_body[static_cast<std::size_t>(a)];
-      if (!MayTouch(forest_, {nullptr, a, {}, model}, {nullptr, kWorldBody, {}, model})) {
+      if (apart.contains({kWorldBody, a}) ||
+          !MayTouch(forest_, {nullptr, a, {}, model}, {nullptr, kWorldBody, {}, model})) {
         text_ += fmt::format("<exclude body1='b{}' body2='w{}'/>", a, model);
       }
       for (int b = a + 1; b < bodies; ++b) {
         const int other = forest_.model_of_body[static_cast<std::size_t>(b)];
-        if (MayTouch(forest_, {nullptr, a, {}, model}, {nullptr, b, {}, other})) continue;
+        if (!apart.contains({a, b}) &&
+            MayTouch(forest_, {nullptr, a, {}, model}, {nullptr, b, {}, other})) {
+          continue;
+        }
         text_ += fmt::format("<exclude body1='b{}' body2='b{}'/>", a, b);
       }
     }
     text_ += "</contact>";
   }
 
+  // Of the bodies of two links, which become known to be apart.
+  void PairWhatTouches(const std::pair<int, int>& links, std::set<std::pair<int, int>>* apart) {
+    const auto first = std::ranges::find(forest_.shapes, links.first, &ForestShape::link);
+    const auto second = std::ranges::find(forest_.shapes, links.second, &ForestShape::link);
+    if (first == forest_.shapes.end() || second == forest_.shapes.end()) return;  // no shapes
+    const int model = first->model;
+    const std::pair<int, int> bodies = std::minmax(first->body, second->body);
+    if (bodies.first == bodies.second || !apart->insert(bodies).second) return;
+    for (std::size_t i = 0; i < forest_.shapes.size(); ++i) {
+      for (std::size_t k = 0; k < forest_.shapes.size(); ++k) {
+        const ForestShape &a = forest_.shapes[i], &b = forest_.shapes[k];
+        if (a.body != bodies.first || b.body != bodies.second || a.model != model ||
+            b.model != model || !MayTouch(forest_, a, b)) {
+          continue;
+        }
+        const double friction = std::min(a.shape->friction, b.shape->friction);
+        text_ += fmt::format(
+            "<pair geom1='s{0}' geom2='s{1}' condim='3' friction='{2:.17g} {2:.17g} 0.005 0.0001 "
+            "0.0001' solref='{3}' solimp='{4}'/>",
+            i, k, friction, kContact, kComingIn);
+      }
+    }
+  }
+
   const Forest& forest_;
+  bool has_rolls_ = false;                          // cylinders
   std::map<double, int> priority_;                  // of each friction
   std::vector<std::vector<std::size_t>> children_;  // of the world, then of each body
   std::map<const Mesh*, std::size_t> meshes_;

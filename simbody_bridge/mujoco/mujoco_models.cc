@@ -12,6 +12,11 @@ class MujocoModels : public SetStepEngine<ForestEngine<MujocoSystem>> {
   MujocoModels(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
       : SetStepEngine(world.integrator.StepOr(kMujocoStep), world, islands) {}
 
+  std::string SuspectOf(int island) override {
+    const int body = At(island).failed_body();
+    return body < 0 ? std::string() : NameOfBody(island, static_cast<std::size_t>(body));
+  }
+
   IslandStart StartOf(int island) override { return {At(island).start(), 0}; }
 
   void ReadContacts(const IslandStep& step, VirtualDuration after,

@@ -7,11 +7,15 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
+#include "simbody_bridge/joints/joint_groups.h"
 #include "simbody_bridge/model/vectors.h"
 #include "simbody_bridge/mujoco/mjcf.h"
 #include "simbody_bridge/one_line.h"
@@ -49,14 +53,33 @@ class TextFile {
   const int fd_;
 };
 
-mjModel* Compile(const std::string& mjcf) {
+// MuJoCo's "WHY Object name = b3, id = …", by the names that the user knows.
+std::string WhyRefused(std::string text, const Forest& forest) {
+  text = OnOneLine(std::move(text));
+  for (const std::string_view tail : {" Object name = ", " Element name ", " Element '"}) {
+    const std::size_t at = text.find(tail);
+    if (at == std::string::npos) continue;
+    std::size_t number = 0;
+    const char* first = text.data() + at + tail.size() + 1;
+    const bool is_body = *(first - 1) == 'b';
+    const auto read = std::from_chars(first, text.data() + text.size(), number);
+    text.erase(at);
+    if (read.ec != std::errc() || !is_body || number >= forest.bodies.size()) break;
+    const Joint* joint = JointOfBody(forest, number);
+    return joint == nullptr ? "its base: " + text
+                            : fmt::format("what joint '{}' moves: {}", joint->name, text);
+  }
+  return text;
+}
+
+mjModel* Compile(const std::string& mjcf, const Forest& forest) {
   mju_user_error = &ThrowError;
   mju_user_warning = &IgnoreWarning;
   const TextFile file(mjcf);
   std::array<char, 1000> error{};
   mjModel* model = mj_loadXML(file.path().c_str(), nullptr, error.data(), error.size());
   if (model == nullptr) {
-    throw DynamicsError("MuJoCo refuses the models: " + OnOneLine(error.data()));
+    throw DynamicsError("MuJoCo refuses it: " + WhyRefused(error.data(), forest));
   }
   return model;
 }
@@ -65,12 +88,16 @@ mjModel* Compile(const std::string& mjcf) {
 
 MujocoSystem::MujocoSystem(const Forest& forest, const std::array<double, 3>& gravity_mps2)
     : forest_(forest),
-      model_(Compile(MjcfOf(forest, gravity_mps2))),
+      model_(Compile(MjcfOf(forest, gravity_mps2), forest)),
       data_(mj_makeData(model_.get())) {
   if (data_ == nullptr)
     throw DynamicsError("MuJoCo cannot make its data; check whether memory is left");
   FindIds();
+  inverse_inertias_.assign(model_->dof_invweight0, model_->dof_invweight0 + model_->nv);
   pairs_ = ShapePairs(forest, shapes_, *model_);
+  if (HasDampingOrFriction(forest)) {
+    joint_steps_ = std::make_unique<MujocoJointSteps>(forest, *model_, bodies_);
+  }
   SetStart();
 }
 
@@ -92,9 +119,11 @@ void MujocoSystem::FindIds() {
     positions_.push_back(joint < 0 ? -1 : model_->jnt_qposadr[joint]);
     speeds_.push_back(joint < 0 ? -1 : model_->jnt_dofadr[joint]);
   }
-  shapes_.resize(forest_.shapes.size());
-  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+  shapes_.resize(static_cast<std::size_t>(model_->ngeom));
+  for (std::size_t i = 0; i < forest_.shapes.size(); ++i) {
     shapes_[static_cast<std::size_t>(IdOf(mjOBJ_GEOM, 's', i))] = i;
+    const int middle = IdOf(mjOBJ_GEOM, 'd', i);
+    if (middle >= 0) shapes_[static_cast<std::size_t>(middle)] = i;
   }
 }
 
@@ -210,15 +239,90 @@ bool MujocoSystem::HasFailed() const {
          data_->warning[mjWARN_BADQACC].number > 0;
 }
 
-// Whether Runge-Kutta 4 bears it: nothing touches, and no servo is as quick as the step.
+int MujocoSystem::BodyOfSpeed(int speed) const {
+  const auto found = std::find(bodies_.begin(), bodies_.end(), model_->dof_bodyid[speed]);
+  return found == bodies_.end() ? -1 : static_cast<int>(found - bodies_.begin());
+}
+
+// MuJoCo says by which number of the state a step failed. Where that is a base, or all at once,
+// what moves fastest beside its inertia is the better guess: nobody knows.
+void MujocoSystem::FindFailedBody() {
+  failed_body_ = -1;
+  for (const int kind : {mjWARN_BADQACC, mjWARN_BADQVEL, mjWARN_BADQPOS}) {
+    const mjWarningStat& warning = data_->warning[kind];
+    if (warning.number == 0) continue;
+    if (kind != mjWARN_BADQPOS) {
+      if (warning.lastinfo < model_->nv) failed_body_ = BodyOfSpeed(warning.lastinfo);
+      return;
+    }
+    for (int joint = 0; joint < model_->njnt; ++joint) {
+      if (model_->jnt_qposadr[joint] > warning.lastinfo) break;
+      failed_body_ = BodyOfSpeed(model_->jnt_dofadr[joint]);
+    }
+    return;
+  }
+}
+
+// Whether Runge-Kutta 4 bears it, or what takes its place: nothing touches, and no servo is as
+// quick as the step, unless it acts in closed form.
 bool MujocoSystem::IsSmooth(std::span<const Wrench> acting, double seconds) const {
   if (data_->ncon > 0) return false;
   for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
     if (joint_actuators_[i] < 0) continue;
-    const JointDrive drive = DriveOf(acting, i);
-    const double by_inertia = seconds * model_->dof_invweight0[speeds_[i]];
+    JointDrive drive = DriveOf(acting, i);
+    if (joint_steps_ != nullptr) {
+      drive.damping = 0;
+      if (joint_steps_->TakeStiffnessOf(speeds_[i])) drive.stiffness = 0;
+    }
+    const double by_inertia = seconds * inverse_inertias_[static_cast<std::size_t>(speeds_[i])];
     if (by_inertia * std::max(drive.damping, seconds * drive.stiffness) > 1) return false;
   }
+  return true;
+}
+
+bool MujocoSystem::IsInStop() const {
+  return std::find(data_->efc_type, data_->efc_type + data_->nefc, mjCNSTR_LIMIT_JOINT) !=
+         data_->efc_type + data_->nefc;
+}
+
+// Whether a servo would give more than it can: a kink, that closed forms do not have.
+bool MujocoSystem::IsAtLimit(std::span<const Wrench> acting, std::size_t joint) const {
+  const JointDrive drive = DriveOf(acting, joint);
+  if (drive.stiffness <= 0 && drive.damping <= 0) return false;
+  const double q = data_->qpos[positions_[joint]], u = data_->qvel[speeds_[joint]];
+  const double limit = forest_.joints[joint].joint->limits.effort;
+  return std::abs(EffortOf(drive, kNoLimit, q, u)) >= limit;
+}
+
+// False where a joint comes into a stop, a servo to its limit, or something touches: the data are
+// then to be begun with again.
+bool MujocoSystem::StepJoints(std::span<const Wrench> acting) {
+  const auto speeds = static_cast<std::size_t>(model_->nv);
+  slopes_.by_speed.assign(model_->dof_damping, model_->dof_damping + speeds);
+  slopes_.by_coordinate.assign(speeds, 0);
+  for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
+    if (joint_actuators_[i] < 0) continue;
+    const JointDrive drive = DriveOf(acting, i);
+    if (IsAtLimit(acting, i)) return false;
+    const auto speed = static_cast<std::size_t>(speeds_[i]);
+    slopes_.by_speed[speed] += std::max(0.0, drive.damping);
+    if (!joint_steps_->TakeStiffnessOf(speeds_[i])) continue;
+    slopes_.by_coordinate[speed] = std::max(0.0, drive.stiffness);
+  }
+  const auto find = [this](const double* positions) {
+    FindPositions(positions);
+    if (data_->ncon > 0 || IsInStop()) return false;
+    mj_fwdVelocity(model_.get(), data_.get());
+    mj_fwdActuation(model_.get(), data_.get());
+    mj_fwdAcceleration(model_.get(), data_.get());
+    return true;
+  };
+  if (!joint_steps_->Step(*model_, data_.get(), slopes_, find)) return false;
+  for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
+    if (joint_actuators_[i] >= 0 && IsAtLimit(acting, i)) return false;
+  }
+  mj_checkPos(model_.get(), data_.get());
+  mj_checkVel(model_.get(), data_.get());
   return true;
 }
 
@@ -259,6 +363,14 @@ void MujocoSystem::StepSmoothly() {
   runge_kutta_.Step(*model_, data_.get(), [this](const double* positions) { FindAll(positions); });
 }
 
+// MuJoCo's stops, mimics and friction of joints are as soft as befits the inertia that it has found
+// of them, once: beside what a servo adds to that they would be nothing.
+void MujocoSystem::SetArmature(int speed, double inertia) {
+  model_->dof_armature[speed] = inertia;
+  const double inverse = inverse_inertias_[static_cast<std::size_t>(speed)];
+  model_->dof_invweight0[speed] = inertia > 0 ? inverse / (1 + inertia * inverse) : inverse;
+}
+
 // Whether MuJoCo would find the positions again where they are: it puts quaternions in order each
 // time, which turns a third of them by a rounding.
 bool MujocoSystem::AreInOrder() {
@@ -284,7 +396,7 @@ void MujocoSystem::StepImplicitly(std::span<const Wrench> acting, double seconds
       if (at_limit_[i] != 0) drive = {.effort = at_limit_[i]};
       SetDrive(i, drive);
       model_->actuator_forcelimited[joint_actuators_[i]] = 0;
-      model_->dof_armature[speeds_[i]] = seconds * drive.damping;
+      SetArmature(speeds_[i], seconds * drive.damping);
     }
     if (AreInOrder()) {
       // Only inertia has changed.
@@ -328,7 +440,7 @@ void MujocoSystem::Begin(std::span<const double> from, std::span<const Wrench> a
     SetDrive(i, DriveOf(acting, i));
     const bool is_limited = forest_.joints[i].joint->limits.effort != kNoLimit;
     model_->actuator_forcelimited[joint_actuators_[i]] = is_limited ? 1 : 0;
-    model_->dof_armature[speeds_[i]] = 0;
+    SetArmature(speeds_[i], 0);
   }
   model_->opt.timestep = seconds;
   mj_checkPos(model_.get(), data_.get());
@@ -337,15 +449,28 @@ void MujocoSystem::Begin(std::span<const double> from, std::span<const Wrench> a
   FindPositions(begin_.data());
 }
 
+// Whether it was a step of joints with damping or friction, and has been taken; else all is as it
+// began.
+bool MujocoSystem::TakesJoints(std::span<const double> from, std::span<const Wrench> acting,
+                               double seconds) {
+  if (joint_steps_ == nullptr || !IsSmooth(acting, seconds) || IsInStop()) return false;
+  if (StepJoints(acting)) return true;
+  Begin(from, acting, seconds);
+  return false;
+}
+
 void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> acting,
                         double seconds, std::vector<double>* to) {
   Begin(from, acting, seconds);
-  if (IsSmooth(acting, seconds)) {
+  if (TakesJoints(from, acting, seconds)) {
+    // What touches is left to the next step.
+  } else if (joint_steps_ == nullptr && IsSmooth(acting, seconds)) {
     StepSmoothly();
   } else {
     StepImplicitly(acting, seconds);
   }
   if (HasFailed()) {
+    FindFailedBody();
     to->assign(from.size(), std::numeric_limits<double>::quiet_NaN());
     return;
   }
@@ -402,7 +527,8 @@ void MujocoSystem::FindForces(std::span<const double> from, std::span<const Wren
                               double seconds, std::vector<ShapeContact>* contacts) {
   contacts->clear();
   Begin(from, acting, seconds);
-  if (IsSmooth(acting, seconds)) {
+  if (TakesJoints(from, acting, seconds)) return;
+  if (joint_steps_ == nullptr && IsSmooth(acting, seconds)) {
     AddForcesOfStages(seconds, contacts);
   } else {
     StepImplicitly(acting, seconds);

@@ -2,7 +2,8 @@
 // later. What MuJoCo itself remembers from step to step is written into it before each step: the
 // guess that its solver begins with is part of the state.
 //
-// A smooth step is Runge-Kutta 4's. Where something touches, and where a servo is too stiff for
+// A smooth step is Runge-Kutta 4's; of joints with damping or friction it is one in which these act
+// in closed form (joint_steps.h). Where something touches, and where a servo is too stiff for
 // that, it is of first order and implicit in the servos, as on Simbody
 // (simbody/tree/contact_step.h): explicit servos of wheels make these chatter, and slip.
 #pragma once
@@ -18,6 +19,7 @@
 #include "simbody_bridge/load.h"
 #include "simbody_bridge/model/forest.h"
 #include "simbody_bridge/model_engine.h"
+#include "simbody_bridge/mujoco/joint_steps.h"
 #include "simbody_bridge/mujoco/runge_kutta4.h"
 #include "simbody_bridge/mujoco/shape_pairs.h"
 
@@ -37,6 +39,9 @@ class MujocoSystem {
   // What touches in such a step, with the mean of its force over the step.
   void FindForces(std::span<const double> from, std::span<const Wrench> acting, double seconds,
                   std::vector<ShapeContact>* contacts);
+
+  // Of the forest, whose joint it was that a step has failed by; -1: none has, or nobody knows.
+  int failed_body() const { return failed_body_; }
 
   // What of a state is a body's, into a state of another system, in which it is `to_body`.
   void CopyBody(std::size_t body, std::span<const double> state, const MujocoSystem& to,
@@ -67,13 +72,20 @@ class MujocoSystem {
   void FindAll(const double* positions);
   void Begin(std::span<const double> from, std::span<const Wrench> acting, double seconds);
   bool IsSmooth(std::span<const Wrench> acting, double seconds) const;
+  bool IsInStop() const;
+  bool IsAtLimit(std::span<const Wrench> acting, std::size_t joint) const;
   void AddForces(double share, std::vector<ShapeContact>* contacts) const;
   void AddForcesOfStages(double seconds, std::vector<ShapeContact>* contacts);
   void StepSmoothly();
+  bool StepJoints(std::span<const Wrench> acting);
+  bool TakesJoints(std::span<const double> from, std::span<const Wrench> acting, double seconds);
   void StepImplicitly(std::span<const Wrench> acting, double seconds);
+  void SetArmature(int speed, double inertia);
   bool AreInOrder();
   bool ReachLimits(std::span<const Wrench> acting, double seconds);
   bool HasFailed() const;
+  int BodyOfSpeed(int speed) const;
+  void FindFailedBody();
 
   const Forest& forest_;
   std::unique_ptr<mjModel, DeleteModel> model_;
@@ -83,7 +95,11 @@ class MujocoSystem {
   std::vector<int> positions_, speeds_;       // where those of each joint are; -1: fixed
   std::vector<std::size_t> shapes_;           // of the forest, of each of MuJoCo's geoms
   std::vector<double> start_;
+  std::vector<double> inverse_inertias_;           // of each speed, as MuJoCo has found them
+  std::unique_ptr<MujocoJointSteps> joint_steps_;  // none where no joint needs them
+  MujocoJointSteps::Slopes slopes_;                // memory of StepJoints
   ShapePairs pairs_;
+  int failed_body_ = -1;
   bool are_apart_ = false;  // where positions were found last
   RungeKutta4 runge_kutta_;
   std::vector<double> begin_;     // memory of Begin and AreInOrder: positions

@@ -54,8 +54,14 @@ ShapePairs::ShapePairs(const Forest& forest, std::span<const std::size_t> shapes
   const auto shape_of = [&](int geom) -> const ForestShape& {
     return forest.shapes[shapes[static_cast<std::size_t>(geom)]];
   };
+  // The middle of a cylinder is in it.
+  const auto is_middle = [&](int geom) {
+    return geom > 0 && &shape_of(geom) == &shape_of(geom - 1);
+  };
   for (int one = 0; one < count; ++one) {
+    if (is_middle(one)) continue;
     for (int other = 0; other < one; ++other) {
+      if (is_middle(other)) continue;
       if (!MayTouch(forest, shape_of(one), shape_of(other))) continue;
       are_too_many_ = pairs_.size() == kMostPairs;
       if (are_too_many_) return;

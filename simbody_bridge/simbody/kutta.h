@@ -27,12 +27,12 @@ void KuttaEnd(const IslandStep& step, const std::vector<double>& middle_rate, do
 void KuttaStep(const std::vector<double>& middle_rate, const std::vector<double>& end_rate,
                double h, IslandStep* step);
 
-// The greatest error among `count` bodies or joints, of coordinates or of speeds, relative for
-// speeds above 1: NaN or infinite if any is. `error(i)` is that of number i of the state,
-// `slots_of` gives the StateSlots of each.
+// The greatest error among `count` bodies or joints, and `whose` it is, of coordinates or of
+// speeds, relative for speeds above 1: NaN or infinite if any is. `error(i)` is that of number i of
+// the state, `slots_of` gives the StateSlots of each.
 template <class Error, class SlotsOf>
 double GreatestError(const IslandStep& step, const Error& error, std::size_t count,
-                     const SlotsOf& slots_of) {
+                     const SlotsOf& slots_of, std::size_t* whose = nullptr) {
   const auto square = [](double x) { return x * x; };
   double greatest = 0, all = 0;
   for (std::size_t index = 0; index < count; ++index) {
@@ -42,9 +42,14 @@ double GreatestError(const IslandStep& step, const Error& error, std::size_t cou
     for (std::size_t i = slots.u; i < slots.u + slots.u_count; ++i) {
       speeds += square(error(i) / std::max(1.0, std::abs(step.from[i])));
     }
+    const double before = greatest;
     greatest = std::max({greatest, coordinates / static_cast<double>(slots.q_count),
                          speeds / static_cast<double>(slots.u_count)});
+    const bool was_finite = std::isfinite(all);
     all += coordinates + speeds;
+    if (whose != nullptr && was_finite && (greatest > before || !std::isfinite(all))) {
+      *whose = index;
+    }
   }
   return std::isfinite(all) ? std::sqrt(greatest) : all;
 }
@@ -52,11 +57,11 @@ double GreatestError(const IslandStep& step, const Error& error, std::size_t cou
 // Of a step of `h` seconds that has been tried.
 template <class SlotsOf>
 double KuttaError(const IslandStep& step, const std::vector<double>& middle_rate, double h,
-                  std::size_t count, const SlotsOf& slots_of) {
+                  std::size_t count, const SlotsOf& slots_of, std::size_t* whose = nullptr) {
   const auto error = [&](std::size_t i) {
     return step.to[i] - (step.from[i] + h * middle_rate[i]);
   };
-  return GreatestError(step, error, count, slots_of);
+  return GreatestError(step, error, count, slots_of, whose);
 }
 
 // Shorter steps lead nowhere: islands count whole nanoseconds.

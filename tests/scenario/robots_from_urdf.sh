@@ -6,6 +6,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cp -r "$source_root/tests/models" "$out/models"
+sed -i 's|</robot>|<gazebo reference="left_wheel"><kp>1</kp></gazebo><gazebo/></robot>|' "$out/models/rover.urdf"
 cat >"$out/s.yaml" <<'YAML'
 duration: 10s
 dynamics: {gravity: [0, 0, -9.81], accuracy: 1e-7}

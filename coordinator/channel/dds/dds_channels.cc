@@ -129,9 +129,12 @@ class DdsChannels::CommandInlet final : public Inlet {
     if (goals && goals->are_wheels) {
       give(dds::DecodeSpeed(sample.cdr));
     } else if (goals && goals->follow_trajectories) {
-      give(dds::DecodeTrajectory(goals->names, realtime_offset, sample.cdr));
+      give(dds::DecodeTrajectory(goals->Driven(), realtime_offset, sample.cdr));
     } else if (goals) {
-      give(dds::DecodeJointCommand(message, goals->names, goals->quantity, sample.cdr));
+      // Numbers without names are of what is driven.
+      const bool has_names = message != dds::CommandMessage::kFloat64MultiArray;
+      give(dds::DecodeJointCommand(message, has_names ? goals->names : goals->Driven(),
+                                   goals->quantity, sample.cdr));
     } else {
       give(dds::DecodeCommand(message, sample.cdr));
     }

@@ -327,7 +327,7 @@ void TakeCommand(std::string_view what, std::string_view text, std::size_t chann
   if (goals && goals->are_wheels) {
     give(DecodeSpeed(text));
   } else if (goals && goals->follow_trajectories) {
-    give(DecodeTrajectory(text, goals->names));
+    give(DecodeTrajectory(text, goals->Driven()));
   } else if (goals) {
     give(DecodeJointCommand(text, goals->names, goals->quantity));
   } else {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "simbody_bridge/model/convex_hull.h"
+#include "simbody_bridge/simbody/contact/near_directions.h"
 #include "simbody_bridge/simbody/vectors.h"
 
 namespace tcs {
@@ -27,16 +28,19 @@ void AddFace(std::vector<int> corners, Polyhedron* solid) {
 }
 
 void FindEdges(Polyhedron* solid) {
+  NearDirections directions(2 * kSameDirection);
+  auto& known = solid->edge_directions;
   for (const Face& face : solid->faces) {
     for (std::size_t i = 0; i < face.corners.size(); ++i) {
       const auto from = static_cast<std::size_t>(face.corners[i]);
       const auto to = static_cast<std::size_t>(face.corners[(i + 1) % face.corners.size()]);
       const Vec3 direction = (solid->corners[to] - solid->corners[from]).normalize();
-      const auto& known = solid->edge_directions;
-      const bool is_known = std::any_of(known.begin(), known.end(), [&](const Vec3& other) {
-        return (other % direction).normSqr() < kSameDirection * kSameDirection;
-      });
-      if (!is_known) solid->edge_directions.push_back(direction);
+      const auto is_same = [&](std::size_t other) {
+        return (known[other] % direction).normSqr() < kSameDirection * kSameDirection;
+      };
+      if (directions.HasAny(direction, is_same) || directions.HasAny(-direction, is_same)) continue;
+      directions.Add(direction, known.size());
+      known.push_back(direction);
     }
   }
 }
@@ -91,7 +95,9 @@ Polyhedron HullOfMesh(const Mesh& mesh) {
     Vec3 normal;
     double offset;
   };
+  constexpr double kSameNormal = 1e-5;
   std::vector<Plane> planes;
+  NearDirections normals(kSameNormal);
   double extent = 0;
   for (const Vec3& corner : solid.corners) extent = std::max(extent, corner.norm());
   for (const auto& [a, b, c] : hull->triangles) {
@@ -100,11 +106,13 @@ Polyhedron HullOfMesh(const Mesh& mesh) {
     };
     const Vec3 normal = ((at(b) - at(a)) % (at(c) - at(a))).normalize();
     const double offset = dot(normal, at(a));
-    const bool is_known = std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
-      return (plane.normal - normal).norm() < 1e-5 &&
-             std::abs(plane.offset - offset) < 1e-5 * extent;
+    const bool is_known = normals.HasAny(normal, [&](std::size_t plane) {
+      return (planes[plane].normal - normal).norm() < kSameNormal &&
+             std::abs(planes[plane].offset - offset) < 1e-5 * extent;
     });
-    if (!is_known) planes.push_back({normal, offset});
+    if (is_known) continue;
+    normals.Add(normal, planes.size());
+    planes.push_back({normal, offset});
   }
   for (const Plane& plane : planes) {
     std::vector<int> corners;

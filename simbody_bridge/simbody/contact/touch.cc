@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "simbody_bridge/simbody/contact/polyhedra.h"
 
@@ -18,17 +19,25 @@ using Kind = Solid::Kind;
 
 constexpr int kStandingPoints = 6;  // of each rim of a cylinder that stands
 
-// The points of a cylinder that are lowest against `normal` (in its frame): on each rim one where
-// it lies or rolls, a round of them where it stands; `each` takes a point and its weight.
+// The points of a cylinder that are lowest against `normal` (in its frame): where it lies or rolls
+// three along the line on which it does, a round of them on each rim where it stands; `each` takes
+// a point and its weight.
+//
+// Simpson's weights give the line's load and its moments. The one in the middle is what a wheel
+// turns round on: by its two rims alone it would turn round one of these, as if the wheels were
+// nearer to each other, or farther apart, by their width.
 template <class Each>
 void ForEachRimPoint(const Solid& cylinder, const Vec3& normal, const Each& each) {
   const double across = std::hypot(normal[0], normal[1]);
   const double standing = std::min(1.0, normal[2] * normal[2]);
-  for (const double z : {-cylinder.half_length(), cylinder.half_length()}) {
-    if (across > 1e-9 && standing < 1) {
-      const double x = -normal[0] / across, y = -normal[1] / across;
-      each(Vec3(cylinder.radius() * x, cylinder.radius() * y, z), 1 - standing);
+  if (across > 1e-9 && standing < 1) {
+    const double x = -normal[0] / across, y = -normal[1] / across;
+    for (const auto& [share, along] : {std::pair{1.0 / 3, -1.0}, {4.0 / 3, 0.0}, {1.0 / 3, 1.0}}) {
+      each(Vec3(cylinder.radius() * x, cylinder.radius() * y, along * cylinder.half_length()),
+           share * (1 - standing));
     }
+  }
+  for (const double z : {-cylinder.half_length(), cylinder.half_length()}) {
     if (standing < 1e-6) continue;
     for (int i = 0; i < kStandingPoints; ++i) {
       const double angle = 2 * std::numbers::pi * i / kStandingPoints;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simbody_bridge/joints/dry_friction.h"
+#include "simbody_bridge/joints/joint_groups.h"
 #include "simbody_bridge/simbody/tree/mimics.h"
 #include "simbody_bridge/simbody/tree/whole_nanoseconds.h"
 #include "simbody_bridge/simbody/vectors.h"
@@ -56,28 +58,58 @@ void ContactStep::AddRow(const SimbodyTree& tree, const Contact& contact, double
   rows_.push_back(std::move(row));
 }
 
-// What does not depend on the contacts: the mass matrix with what joints hold against, and the
-// forces.
-void ContactStep::Assemble(SimbodyTree& tree, double h) {
+// What does not depend on the contacts, nor on what is assumed of drives.
+void ContactStep::FindForces(SimbodyTree& tree) {
   const SimTK::State& state = tree.evaluated();
   const int all = state.getNU();
-  SimTK::Matrix mass;
-  tree.matter().calcM(state, mass);
-  Eigen::MatrixXd whole(all, all);
-  for (int i = 0; i < all; ++i) {
-    for (int k = 0; k < all; ++k) whole(i, k) = mass(i, k);
-  }
-  const Eigen::Map<const Eigen::VectorXd> speeds(state.getU().getContiguousScalarData(), all);
+  tree.FindMass(&whole_mass_);
+  speeds_ = Eigen::Map<const Eigen::VectorXd>(state.getU().getContiguousScalarData(), all);
   const Eigen::Map<const Eigen::VectorXd> rates(state.getUDot().getContiguousScalarData(), all);
-  Eigen::VectorXd forces = whole * rates;
+  all_forces_ = whole_mass_ * rates;
   tree.joint_force().Slopes(state, &by_speed_, &by_coordinate_);
-  for (int i = 0; i < all; ++i) {
+  tree.joint_force().FindDrives(state, &drives_);
+  at_limit_.assign(drives_.size(), 0);
+  // Drives that are at their limits now may be free at the end.
+  for (const JointForce::LimitedDrive& of : drives_) {
+    const double effort = EffortOf(of.drive, kNoLimit, of.position, of.velocity);
+    if (std::abs(effort) < of.limit) continue;
+    all_forces_(static_cast<Eigen::Index>(of.speed)) +=
+        effort - std::clamp(effort, -of.limit, of.limit);
+    by_speed_[of.speed] += std::max(0.0, of.drive.damping);
+    by_coordinate_[of.speed] += std::max(0.0, of.drive.stiffness);
+  }
+}
+
+// The mass matrix with what joints hold against, and the forces.
+void ContactStep::Assemble(double h) {
+  Eigen::MatrixXd whole = whole_mass_;
+  Eigen::VectorXd forces = all_forces_;
+  for (Eigen::Index i = 0; i < forces.size(); ++i) {
     const auto slot = static_cast<std::size_t>(i);
-    forces(i) -= h * by_coordinate_[slot] * speeds(i);
+    forces(i) -= h * by_coordinate_[slot] * speeds_(i);
     whole(i, i) += h * by_speed_[slot] + h * h * by_coordinate_[slot];
   }
   mass_ = reduction_.transpose() * whole * reduction_;
   force_ = reduction_.transpose() * forces;
+}
+
+// Whether one more servo would give more than it can at the end of the step.
+bool ContactStep::ReachLimits(double h) {
+  const Eigen::VectorXd end = speeds_ + reduction_ * change_;
+  bool is_new = false;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (at_limit_[i] != 0) continue;
+    const JointForce::LimitedDrive& of = drives_[i];
+    const auto speed = static_cast<Eigen::Index>(of.speed);
+    const double effort = EffortOf(of.drive, kNoLimit, of.position + h * end[speed], end[speed]);
+    if (!(std::abs(effort) > of.limit)) continue;
+    is_new = true;
+    at_limit_[i] = effort > 0 ? of.limit : -of.limit;
+    all_forces_(speed) += at_limit_[i] - EffortOf(of.drive, kNoLimit, of.position, of.velocity);
+    by_speed_[of.speed] -= std::max(0.0, of.drive.damping);
+    by_coordinate_[of.speed] -= std::max(0.0, of.drive.stiffness);
+  }
+  return is_new;
 }
 
 void ContactStep::Solve(double h) {
@@ -99,7 +131,54 @@ void ContactStep::Solve(double h) {
     system_.noalias() += h * row.jacobian.transpose() * slope * row.jacobian;
     change_.noalias() += row.jacobian.transpose() * force;
   }
-  change_ = system_.llt().solve(h * change_);
+  if (rubbing_.empty()) {
+    change_ = system_.llt().solve(h * change_);
+  } else {
+    HoldJoints(h);
+  }
+}
+
+void ContactStep::FindFriction(const SimbodyTree& tree) {
+  rubbing_.clear();
+  const Forest& forest = tree.forest();
+  const SimTK::State& state = tree.evaluated();
+  Eigen::VectorXd friction = Eigen::VectorXd::Zero(state.getNU());
+  for (std::size_t body = 0; body < forest.bodies.size(); ++body) {
+    const StateSlots& slots = tree.slots()[body];
+    const auto first = static_cast<Eigen::Index>(slots.u) - state.getNQ();
+    friction.segment(first, static_cast<Eigen::Index>(slots.u_count))
+        .setConstant(FrictionOf(forest, body));
+  }
+  if (friction.isZero(0)) return;
+  const Eigen::VectorXd bounds = reduction_.cwiseAbs().transpose() * friction;
+  std::vector<double> speeds;
+  for (Eigen::Index column = 0; column < bounds.size(); ++column) {
+    if (bounds[column] <= 0) continue;
+    int own = 0;
+    while (reduction_(own, column) != 1) ++own;
+    rubbing_.push_back(column);
+    speeds.push_back(state.getU()[own]);
+  }
+  bounds_ = bounds(rubbing_);
+  rubbing_speed_ = Eigen::Map<const Eigen::VectorXd>(speeds.data(), bounds_.size());
+}
+
+void ContactStep::HoldJoints(double h) {
+  const Eigen::LLT<Eigen::MatrixXd> solver(system_);
+  Eigen::MatrixXd by_effort =
+      Eigen::MatrixXd::Zero(system_.rows(), static_cast<Eigen::Index>(rubbing_.size()));
+  for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+    by_effort(rubbing_[i], static_cast<Eigen::Index>(i)) = h;
+  }
+  solver.solveInPlace(by_effort);
+  change_ = solver.solve(h * change_);
+  FindHolds(by_effort(rubbing_, Eigen::all), rubbing_speed_ + change_(rubbing_), bounds_, &hold_);
+  change_ += by_effort * hold_;
+  // Those that are held rest, but for rounding.
+  for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (std::abs(hold_[row]) < bounds_[row]) change_[rubbing_[i]] = -rubbing_speed_[row];
+  }
 }
 
 // What the contacts do at the end of the step; whether that is not yet what was assumed.
@@ -126,7 +205,7 @@ bool ContactStep::Update(double h) {
   return has_changed;
 }
 
-void ContactStep::FindForces(std::vector<ShapeContact>* contacts) const {
+void ContactStep::ReadForces(std::vector<ShapeContact>* contacts) const {
   contacts->clear();
   for (const Row& row : rows_) {
     if (!row.is_solved_for) continue;
@@ -164,13 +243,17 @@ void ContactStep::Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, d
   const bool is_known = std::isfinite(step.from_rate.back());
   if (is_known) {
     Reduce(tree, &reduction_);
-    Assemble(tree, h);
+    FindForces(tree);
+    FindFriction(tree);
     tree.contacts().Find(state, &contacts_);
     for (const Contact& contact : contacts_) AddRow(tree, contact, h);
-    for (int round = 0; round < kRounds; ++round) {
-      Solve(h);
-      if (!Update(h)) break;
-    }
+    do {
+      Assemble(h);
+      for (int round = 0; round < kRounds; ++round) {
+        Solve(h);
+        if (!Update(h)) break;
+      }
+    } while (ReachLimits(h));
     const Eigen::VectorXd change = reduction_ * change_;
     const int coordinates = state.getNQ();
     SimTK::Vector speeds = state.getU(), rates;

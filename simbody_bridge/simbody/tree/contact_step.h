@@ -1,10 +1,12 @@
 // A step in which something touches: of first order, and implicit in what is stiff, so that hard
-// contact, stiction, stops and servos need no short steps.
+// contact, stiction, stops, servos and joints' own friction need no short steps.
 //
 // The speeds at its end u' solve M (u' - u) = h f(q + h u', u'), where f is taken as linear around
 // the beginning along contacts' normals, in joints' dampers, stops and drives; contacts that would
 // pull let go, and friction, which has the direction of the sliding at the end, is found by a few
-// rounds. Then q' = q + h N u'.
+// rounds. Joints' own friction holds them at the end of the step, or acts against the motion there
+// (joints/dry_friction.h). A servo that would give more than it can at the end is held to its
+// limit. Then q' = q + h N u'.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +27,7 @@ class ContactStep {
   // end: the step ends where they have just met.
   void TakeUpToTouch(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double length_s);
   // What touched in the step that was taken last, with the forces that its speeds come from.
-  void FindForces(std::vector<ShapeContact>* contacts) const;
+  void ReadForces(std::vector<ShapeContact>* contacts) const;
 
  private:
   // A contact's two bodies in one: velocities of the first beside the second at the point.
@@ -41,15 +43,26 @@ class ContactStep {
     double across_nspm = 0;      // of friction, by the speed of sliding
     double along_n = 0;          // what the spring and the damper give; may be negative
   };
-  void Assemble(SimbodyTree& tree, double h);
+  void FindForces(SimbodyTree& tree);
+  void Assemble(double h);
+  bool ReachLimits(double h);
   void AddRow(const SimbodyTree& tree, const Contact& contact, double h);
+  void FindFriction(const SimbodyTree& tree);
   void Solve(double h);
+  void HoldJoints(double h);
   bool Update(double h);
 
   // See mimics.h.
   Eigen::MatrixXd reduction_;
-  Eigen::MatrixXd mass_, system_;
+  // Of all speeds, and reduced with what joints hold against.
+  Eigen::MatrixXd whole_mass_, mass_, system_;
+  Eigen::VectorXd all_forces_, speeds_;
+  std::vector<JointForce::LimitedDrive> drives_;
+  std::vector<double> at_limit_;  // what each drive is held to; 0: it is free
   Eigen::VectorXd force_, change_;
+  // Of the reduced speeds that have friction: which they are, what it holds, and the speeds before.
+  std::vector<Eigen::Index> rubbing_;
+  Eigen::VectorXd bounds_, rubbing_speed_, hold_;
   std::vector<Contact> contacts_;
   std::vector<Row> rows_;
   std::vector<double> by_speed_, by_coordinate_;

@@ -12,10 +12,11 @@
 
 namespace tcs {
 
-// `Method` derives from it, and has
+// `Method` derives from it, writes `worst_body_` of what it has tried, and has
 //   Begin(tree, loads, step): what any length of the step needs
 //   Try(tree, loads, step, seconds): a step of that length
 //   ErrorOf(tree, step, seconds): how far that may be off (GreatestError)
+//   EndAtEvent(tree, loads, step): of one that is good enough, to end it earlier
 template <class Method>
 class ControlledSteps {
  public:
@@ -30,10 +31,14 @@ class ControlledSteps {
     while (!IsGoodEnough(tree, loads, step, accuracy, &length)) {
       length.Set(WholeNanoseconds(length.seconds()));
     }
+    method().EndAtEvent(tree, loads, step);
     tree.Project(step.to);
     step.to_rate.resize(step.to.size());
     tree.EvaluateOrRecall(step.to, loads.At(step, step.length_s), step.to_rate.data());
   }
+
+  // The body whose error was the greatest in what was tried last.
+  std::size_t worst_body() const { return worst_body_; }
 
   // As long as its limit.
   void TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
@@ -42,6 +47,9 @@ class ControlledSteps {
     method().Try(tree, loads, step, step.length_s);
     tree.Project(step.to);
   }
+
+ protected:
+  std::size_t worst_body_ = 0;
 
  private:
   Method& method() { return static_cast<Method&>(*this); }

@@ -14,8 +14,6 @@ namespace {
 constexpr double kStopRadps = 500;
 // Over this depth its damping sets in.
 constexpr double kStopDepth = 2e-4;
-// Up to this speed friction grows, instead of acting at once.
-constexpr double kFrictionSpeed = 2e-3;
 // What a joint in a stop, or about to be, takes to notice.
 constexpr double kNearStopS = 1e-3;
 
@@ -66,11 +64,7 @@ void JointForce::Slopes(const SimTK::State& state, std::vector<double>* by_speed
     const SimTK::MobilizedBody& body = BodyAt(forest_.joints[i].body);
     const auto first = static_cast<std::size_t>(body.getFirstUIndex(state));
     const auto count = static_cast<std::size_t>(body.getNumU(state));
-    for (std::size_t u = first; u < first + count; ++u) {
-      const double speed = state.getU()[static_cast<int>(u)];
-      (*by_speed)[u] = joint.damping +
-                       joint.friction / kFrictionSpeed * SlopeOfSmoothSign(speed / kFrictionSpeed);
-    }
+    std::fill_n(by_speed->begin() + static_cast<std::ptrdiff_t>(first), count, joint.damping);
     if (count != 1) continue;
     const double q = state.getQ()[body.getFirstQIndex(state)];
     const double speed = state.getU()[static_cast<int>(first)];
@@ -87,6 +81,20 @@ void JointForce::Slopes(const SimTK::State& state, std::vector<double>* by_speed
   }
 }
 
+void JointForce::FindDrives(const SimTK::State& state, std::vector<LimitedDrive>* drives) const {
+  drives->clear();
+  for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
+    if (forest_.joints[i].body == kWorldBody) continue;
+    const SimTK::MobilizedBody& body = BodyAt(forest_.joints[i].body);
+    if (body.getNumU(state) != 1) continue;
+    const JointDrive drive = DriveOfJoint(acting_, forest_.links.size(), i);
+    if (drive.stiffness <= 0 && drive.damping <= 0) continue;
+    const int speed = body.getFirstUIndex(state);
+    drives->push_back({static_cast<std::size_t>(speed), state.getQ()[body.getFirstQIndex(state)],
+                       state.getU()[speed], drive, forest_.joints[i].joint->limits.effort});
+  }
+}
+
 void JointForce::calcForce(const SimTK::State& state,
                            SimTK::Vector_<SimTK::SpatialVec>& /*body_forces*/,
                            SimTK::Vector_<SimTK::Vec3>& /*particle_forces*/,
@@ -99,11 +107,7 @@ void JointForce::calcForce(const SimTK::State& state,
     const Joint& joint = *forest_.joints[i].joint;
     const SimTK::MobilizedBody& body = BodyAt(forest_.joints[i].body);
     const int first = body.getFirstUIndex(state), count = body.getNumU(state);
-    for (int u = first; u < first + count; ++u) {
-      const double speed = all_u[u];
-      mobility_forces[u] -=
-          joint.damping * speed + joint.friction * SmoothSign(speed / kFrictionSpeed);
-    }
+    for (int u = first; u < first + count; ++u) mobility_forces[u] -= joint.damping * all_u[u];
     if (count != 1) continue;
     const double q = all_q[body.getFirstQIndex(state)], speed = all_u[first];
     const JointLimits& limits = joint.limits;

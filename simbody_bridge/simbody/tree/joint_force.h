@@ -1,5 +1,5 @@
-// What acts along the joints, as a Simbody force element: drives, damping, friction, and the stops
-// at the ends of their ranges.
+// What acts along the joints, as a Simbody force element: drives, damping, and the stops at the
+// ends of their ranges. Friction is no function of the state: the steps find it.
 #pragma once
 
 #include <span>
@@ -18,9 +18,19 @@ class JointForce : public ForestForce {
   void Measure(const SimTK::SimbodyMatterSubsystem& matter, const SimTK::State& start);
 
   // How the forces fall as each speed grows, and as each coordinate that is a joint's only one
-  // does. At least 0.
+  // does. At least 0. Drives that are at their limits give what they give.
   void Slopes(const SimTK::State& state, std::vector<double>* by_speed,
               std::vector<double>* by_coordinate) const;
+
+  // What drives a joint, and how that is limited.
+  struct LimitedDrive {
+    std::size_t speed;  // the joint's, among all
+    double position, velocity;
+    JointDrive drive;
+    double limit;
+  };
+  // Those with a spring or a damper, in the state where the forces were evaluated last.
+  void FindDrives(const SimTK::State& state, std::vector<LimitedDrive>* drives) const;
 
   void calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
                  SimTK::Vector_<SimTK::Vec3>& particle_forces,

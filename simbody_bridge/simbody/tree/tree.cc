@@ -188,13 +188,68 @@ void SimbodyTree::CoordinateRates(std::span<const double> state, std::span<const
 }
 
 void SimbodyTree::Linearise(std::span<const double> state, std::span<const Wrench> acting,
-                            SimTK::Matrix* mass, std::vector<double>* by_speed,
+                            Eigen::MatrixXd* mass, std::vector<double>* by_speed,
                             std::vector<double>* by_coordinate) {
   acting_ = acting;
+  FindMass(state, mass);
+  joint_force_->Slopes(state_, by_speed, by_coordinate);
+}
+
+void SimbodyTree::FindMass(std::span<const double> state, Eigen::MatrixXd* mass) {
   Load(state);
   system_.realize(state_, SimTK::Stage::Position);
-  matter_.calcM(state_, *mass);
-  joint_force_->Slopes(state_, by_speed, by_coordinate);
+  FindMass(mass);
+}
+
+// By composite rigid bodies (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 6), in the
+// number of speeds times the depth of the tree: Simbody's calcM multiplies by the matrix as often
+// as it has columns.
+void SimbodyTree::FindMass(Eigen::MatrixXd* mass) {
+  const int all = state_.getNU(), coordinates = state_.getNQ();
+  mass->setZero(all, all);
+  if (bodies_.size() == 1) {
+    SimTK::Matrix of_one;
+    matter_.calcM(state_, of_one);
+    for (int i = 0; i < all; ++i) {
+      for (int k = 0; k < all; ++k) (*mass)(i, k) = of_one(i, k);
+    }
+    return;
+  }
+  matter_.realizeCompositeBodyInertias(state_);
+  joint_axes_.resize(static_cast<std::size_t>(all));
+  const auto first_of = [&](std::size_t body) {
+    return static_cast<int>(slots_[body].u) - coordinates;
+  };
+  for (std::size_t body = 0; body < bodies_.size(); ++body) {
+    for (int k = 0; k < static_cast<int>(slots_[body].u_count); ++k) {
+      joint_axes_[static_cast<std::size_t>(first_of(body) + k)] =
+          bodies_[body].getHCol(state_, SimTK::MobilizerUIndex(k));
+    }
+  }
+  for (std::size_t body = 0; body < bodies_.size(); ++body) {
+    const SimTK::SpatialInertia& composite =
+        matter_.getCompositeBodyInertia(state_, bodies_[body].getMobilizedBodyIndex());
+    for (int k = 0; k < static_cast<int>(slots_[body].u_count); ++k) {
+      const int column = first_of(body) + k;
+      SimTK::SpatialVec force = composite * joint_axes_[static_cast<std::size_t>(column)];
+      for (std::size_t at = body;;) {
+        const int first = first_of(at);
+        const int count = at == body ? k + 1 : static_cast<int>(slots_[at].u_count);
+        for (int row = first; row < first + count; ++row) {
+          const SimTK::SpatialVec& axis = joint_axes_[static_cast<std::size_t>(row)];
+          (*mass)(row, column) = (*mass)(column, row) =
+              dot(axis[0], force[0]) + dot(axis[1], force[1]);
+        }
+        const int parent = forest_.bodies[at].parent;
+        if (parent == kWorldBody) break;
+        const auto next = static_cast<std::size_t>(parent);
+        const SimTK::Vec3 arm =
+            bodies_[at].getBodyOriginLocation(state_) - bodies_[next].getBodyOriginLocation(state_);
+        force[0] += arm % force[1];
+        at = next;
+      }
+    }
+  }
 }
 
 void SimbodyTree::NormaliseQuaternions(std::span<double> state) const {

@@ -4,6 +4,7 @@
 // next.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <span>
 #include <vector>
@@ -37,10 +38,15 @@ class SimbodyTree {
   // How fast the coordinates of `state` grow at these speeds.
   void CoordinateRates(std::span<const double> state, std::span<const double> speeds,
                        std::span<double> rates) const;
-  // For steps that are implicit in what acts along the joints: the mass matrix at `state`, and
-  // JointForce::Slopes there where `acting` acts.
-  void Linearise(std::span<const double> state, std::span<const Wrench> acting, SimTK::Matrix* mass,
-                 std::vector<double>* by_speed, std::vector<double>* by_coordinate);
+  // For steps that are implicit in what acts along the joints: the mass matrix at `state`, of all
+  // speeds, and JointForce::Slopes there where `acting` acts.
+  void Linearise(std::span<const double> state, std::span<const Wrench> acting,
+                 Eigen::MatrixXd* mass, std::vector<double>* by_speed,
+                 std::vector<double>* by_coordinate);
+  // The mass matrix at `state` alone.
+  void FindMass(std::span<const double> state, Eigen::MatrixXd* mass);
+  // That of the state that was evaluated last.
+  void FindMass(Eigen::MatrixXd* mass);
   // Makes quaternions unit length again.
   void NormaliseQuaternions(std::span<double> state) const;
   // The same, and takes joints that mimic others to where these are.
@@ -92,7 +98,8 @@ class SimbodyTree {
   std::unique_ptr<Contacts> contacts_;
   SimTK::State state_;
   bool is_loaded_ = false;
-  std::span<const Wrench> acting_;  // while a state is evaluated
+  std::vector<SimTK::SpatialVec> joint_axes_;  // memory of FindMass
+  std::span<const Wrench> acting_;             // while a state is evaluated
   struct {
     std::vector<double> state, rate;
     std::vector<Wrench> acting;

@@ -1,12 +1,12 @@
 #include "simbody_bridge/simbody/tree/tree_engine.h"
 
 #include <algorithm>
+#include <string>
 
 #include "simbody_bridge/forest_engine.h"
-#include "simbody_bridge/one_line.h"
 #include "simbody_bridge/simbody/steps.h"
 #include "simbody_bridge/simbody/tree/contact_step.h"
-#include "simbody_bridge/simbody/tree/servo_steps.h"
+#include "simbody_bridge/simbody/tree/joint_steps.h"
 #include "simbody_bridge/simbody/tree/tree_steps.h"
 
 namespace tcs {
@@ -18,27 +18,55 @@ constexpr VirtualDuration kContactStep = VirtualDuration::Milliseconds(1);
 
 // With the memory of its steps: islands are integrated side by side.
 struct SteppedTree : SimbodyTree {
-  using SimbodyTree::SimbodyTree;
+  SteppedTree(const Forest& forest, const std::array<double, 3>& gravity_mps2) try
+      : SimbodyTree(forest, gravity_mps2) {
+  } catch (const std::exception& e) {
+    throw DynamicsError(std::string("Simbody refuses it: ") + e.what());
+  }
 
   // Takes a step in which nothing touches.
   void TakeControlled(ModelLoads& loads, IslandStep& step, double accuracy, double limit_s) {
-    if (ServoSteps::AreFor(*this, loads.At(step, 0))) {
-      servo_steps.TakeControlled(*this, loads, step, accuracy, limit_s);
-    } else {
-      steps.TakeControlled(*this, loads, step, accuracy, limit_s);
+    const JointSteps::Fit fit = joint_steps.FitOf(*this, loads.At(step, 0));
+    took_joints = fit == JointSteps::Fit::kFits;
+    switch (fit) {
+      case JointSteps::Fit::kNotNeeded:
+        steps.TakeControlled(*this, loads, step, accuracy, limit_s);
+        return;
+      case JointSteps::Fit::kFits:
+        joint_steps.TakeControlled(*this, loads, step, accuracy, limit_s);
+        return;
+      case JointSteps::Fit::kTooLarge:
+        TakeShort(loads, step, std::min(std::min(kContactStep, step.limit).seconds(), limit_s));
+        return;
     }
   }
   void TakeWhole(ModelLoads& loads, IslandStep& step) {
-    if (ServoSteps::AreFor(*this, loads.At(step, 0))) {
-      servo_steps.TakeWhole(*this, loads, step);
-    } else {
-      steps.TakeWhole(*this, loads, step);
+    switch (joint_steps.FitOf(*this, loads.At(step, 0))) {
+      case JointSteps::Fit::kNotNeeded:
+        steps.TakeWhole(*this, loads, step);
+        return;
+      case JointSteps::Fit::kFits:
+        joint_steps.TakeWhole(*this, loads, step);
+        return;
+      case JointSteps::Fit::kTooLarge:
+        contact_step.Take(*this, loads, step, step.limit.seconds());
+        return;
     }
   }
 
+  std::size_t worst_body() const {
+    return took_joints ? joint_steps.worst_body() : steps.worst_body();
+  }
+
+  void TakeShort(ModelLoads& loads, IslandStep& step, double length_s) {
+    if (length_s < step.limit.seconds()) length_s = WholeNanoseconds(length_s);
+    contact_step.Take(*this, loads, step, length_s);
+  }
+
   TreeSteps steps;
-  ServoSteps servo_steps;
+  JointSteps joint_steps;
   ContactStep contact_step;
+  bool took_joints = false;
   IslandStep shortened;
 };
 
@@ -53,6 +81,8 @@ class TreeEngine : public ForestEngine<SteppedTree> {
   IslandStart StartOf(int island) override { return {At(island).start(), kFirstTreeTryS}; }
   VirtualDuration LongestStep(int /*island*/) const override { return longest_step_; }
   bool has_set_steps() const override { return has_set_steps_; }
+
+  std::string SuspectOf(int island) override { return NameOfBody(island, At(island).worst_body()); }
 
   void Take(IslandStep& step) override {
     SteppedTree& tree = At(step.island);
@@ -78,8 +108,8 @@ class TreeEngine : public ForestEngine<SteppedTree> {
       return;
     }
     SteppedTree& tree = At(step.island);
-    if (ServoSteps::Took(step)) {
-      tree.servo_steps.Within(tree, step, after.seconds(), state);
+    if (JointSteps::Took(step)) {
+      tree.joint_steps.Within(tree, step, after.seconds(), state);
     } else {
       InterpolateNumbers(step, after.seconds(), state);
     }
@@ -95,7 +125,7 @@ class TreeEngine : public ForestEngine<SteppedTree> {
     if (tree.TimeToTouch(again.from) >= contact_s) return;
     TakeInContact(tree, LoadsOn(step.island), again, contact_s);
     std::vector<ShapeContact> found;
-    tree.contact_step.FindForces(&found);
+    tree.contact_step.ReadForces(&found);
     AppendForces(ForestOf(step.island), found, contacts);
   }
 
@@ -126,11 +156,7 @@ std::unique_ptr<ModelEngine> MakeTreeEngine(const WorldSpec& world,
         "models move on Simbody by the integrator runge_kutta3 only; leave `integrator` out, or "
         "take MuJoCo as the engine");
   }
-  try {
-    return std::make_unique<TreeEngine>(world, islands);
-  } catch (const std::exception& e) {
-    throw DynamicsError("Simbody refuses the models: " + OnOneLine(e.what()));
-  }
+  return std::make_unique<TreeEngine>(world, islands);
 }
 
 }  // namespace tcs

@@ -23,10 +23,11 @@ void TreeSteps::Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, doub
   KuttaStep(middle_rate_, end_rate_, h, &step);
 }
 
-double TreeSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, double h) const {
+double TreeSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, double h) {
   const auto slots = tree.slots();
-  return KuttaError(step, middle_rate_, h, slots.size(),
-                    [&](std::size_t joint) { return slots[joint]; });
+  return KuttaError(
+      step, middle_rate_, h, slots.size(), [&](std::size_t joint) { return slots[joint]; },
+      &worst_body_);
 }
 
 }  // namespace tcs

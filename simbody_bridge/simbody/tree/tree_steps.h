@@ -12,7 +12,8 @@ class TreeSteps : public ControlledSteps<TreeSteps> {
   friend class ControlledSteps<TreeSteps>;
   void Begin(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
   void Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double length_s);
-  double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double length_s) const;
+  double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double length_s);
+  void EndAtEvent(SimbodyTree& /*tree*/, ModelLoads& /*loads*/, IslandStep& /*step*/) {}
 
   std::vector<double> state_, middle_rate_, end_rate_;
 };

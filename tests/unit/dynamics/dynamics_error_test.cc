@@ -190,7 +190,7 @@ TEST(SimbodyErrors, TellWhenErrorControlFindsNoStepSmallEnough) {
     (void)dynamics->Read(0);
     ADD_FAILURE() << "went on";
   } catch (const DynamicsError& e) {
-    EXPECT_THAT(e.what(), testing::StartsWith("the integration from 0 s on failed: "));
+    EXPECT_THAT(e.what(), testing::StartsWith("body 'ship': the integration from 0 s on failed: "));
     EXPECT_THAT(e.what(), testing::Not(testing::HasSubstr("\n")));
   }
 }

@@ -1,5 +1,5 @@
 // Springs and dampers that are pushed: closed forms, and many small steps.
-#include "simbody_bridge/simbody/tree/linear_response.h"
+#include "simbody_bridge/joints/linear_response.h"
 
 #include <gtest/gtest.h>
 

@@ -28,6 +28,10 @@ Tally FuzzResults(int count, std::uint64_t seed);
 // names the file.
 Tally FuzzModels(int count, std::uint64_t seed);
 
+// Sound robots some of whose values and elements are others, as draughtsmen and exporters leave
+// them: the same, for longer.
+Tally FuzzRobots(int count, std::uint64_t seed);
+
 // The bytes of a file.
 std::string TextOf(const std::filesystem::path& path);
 

@@ -1,5 +1,5 @@
-// tcs_fuzz scenarios|results|models COUNT SEED: 0 if all damaged inputs were taken or refused in
-// order.
+// tcs_fuzz scenarios|results|models|robots COUNT SEED: 0 if all damaged inputs were taken or
+// refused in order.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -51,10 +51,11 @@ int main(int argc, char** argv) {
   const std::map<std::string, Tally (*)(int, std::uint64_t)> kinds = {
       {"scenarios", &tcs::fuzz::FuzzScenarios},
       {"results", &tcs::fuzz::FuzzResults},
-      {"models", &tcs::fuzz::FuzzModels}};
+      {"models", &tcs::fuzz::FuzzModels},
+      {"robots", &tcs::fuzz::FuzzRobots}};
   const auto kind = kinds.find(argc > 1 ? argv[1] : "");
   if (kind == kinds.end()) {
-    std::fprintf(stderr, "usage: tcs_fuzz scenarios|results|models COUNT SEED\n");
+    std::fprintf(stderr, "usage: tcs_fuzz scenarios|results|models|robots COUNT SEED\n");
     return 2;
   }
   const int count = argc > 2 ? atoi(argv[2]) : 300;

@@ -1,18 +1,13 @@
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "coordinator/models/load_urdf.h"
-#include "coordinator/os/visible.h"
-#include "simbody_bridge/engines.h"
-#include "simbody_bridge/model/model_check.h"
 #include "tests/unit/fuzz/fuzz.h"
 #include "tests/unit/fuzz/mutate.h"
+#include "tests/unit/fuzz/try_robot.h"
 #include "tests/unit/models/model_folder.h"
 
 namespace tcs::fuzz {
@@ -94,59 +89,6 @@ std::vector<Input> Corpus() {
   return corpus;
 }
 
-bool IsOneSentence(const std::string& sentence) {
-  return !sentence.empty() && sentence.size() < 10'000 && sentence.find('\n') == std::string::npos;
-}
-
-// A tenth of a second of its motion on each engine, which may refuse it, too.
-std::string Move(const RobotModel& model, bool* refused) {
-  for (const EngineTraits& engine : kEngines) {
-    if (!engine.has_models) continue;
-    WorldSpec world;
-    world.gravity_mps2 = {0, 0, -9.81};
-    world.integrator.engine = engine.kind;
-    world.models = {model};
-    world.fixtures = {{.geometry = PlaneShape{}}};
-    try {
-      auto dynamics = MakeDynamics(world);
-      const VirtualTime end = VirtualTime{} + VirtualDuration::Milliseconds(100);
-      for (int link = 0; link < static_cast<int>(model.links.size()); ++link) {
-        LinkState state;
-        dynamics->ReadLinks(end, {&link, 1}, {&state, 1});
-        if (!std::isfinite(state.pose.position_m[2])) return "a link is nowhere";
-      }
-    } catch (const DynamicsError& error) {
-      *refused = true;
-      if (!IsOneSentence(error.what())) return "an engine says: " + Visible(error.what());
-    }
-  }
-  return {};
-}
-
-// `path` is what a refusal begins with.
-std::string Load(const std::string& urdf, const std::string& damaged, bool* refused) {
-  MeshLibrary meshes;
-  std::vector<std::string> warnings;
-  const auto loaded = LoadUrdf(urdf, {}, PackagePath({TCS_MODEL_ZOO}), &meshes, &warnings);
-  for (const std::string& warning : warnings) {
-    if (!IsOneSentence(warning)) return "a warning is: " + Visible(warning);
-  }
-  const auto* error = std::get_if<LoadError>(&loaded);
-  *refused = error != nullptr;
-  if (error != nullptr) {
-    const bool is_placed =
-        error->message.starts_with(urdf + ":") || error->message.starts_with(damaged + ":");
-    return is_placed && IsOneSentence(error->message)
-               ? ""
-               : "a refusal does not say where: " + Visible(error->message);
-  }
-  const RobotModel& model = std::get<RobotModel>(loaded);
-  // Where its joints start is not in the file.
-  if (CheckModel(model).has_value()) return {};
-  constexpr std::size_t kMostLinks = 60;
-  return model.links.size() > kMostLinks ? "" : Move(model, refused);
-}
-
 }  // namespace
 
 Tally FuzzModels(int count, std::uint64_t seed) {
@@ -169,7 +111,9 @@ Tally FuzzModels(int count, std::uint64_t seed) {
                            "<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>"
                            "</inertial><collision><geometry><mesh filename=\"damaged" +
                                input.kind + "\"/></geometry></collision></link></robot>");
-    const auto wrong = tally.Count([&](bool* refused) { return Load(urdf, damaged, refused); });
+    const auto wrong = tally.Count([&](bool* refused) {
+      return TryRobot(urdf, damaged, VirtualDuration::Milliseconds(100), refused);
+    });
     if (wrong.has_value()) SayWrong("models", number, *wrong, text);
   }
   return tally;

@@ -89,7 +89,7 @@ const Attack kAttacks[] = {
     {"ExternalEntity",
      [] {
        return std::string(
-           "<!DOCTYPE robot SYSTEM \"file:///etc/passwd\"><robot name='r'><link "
+           "<!DOCTYPE robot [<!ENTITY e SYSTEM \"file:///etc/passwd\">]><robot name='r'><link "
            "name='a'/></robot>");
      },
      "document type"},

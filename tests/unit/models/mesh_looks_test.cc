@@ -122,5 +122,45 @@ TEST(MeshLooks, AreNoneWhereTheyCannotBeRead) {
   EXPECT_FALSE(ReadLooks(folder.Path(""), 100)) << "a folder";
 }
 
+// Two materials: of most of its area it is orange.
+TEST(MeshLooks, HaveTheColourOfMostOfTheirArea) {
+  const ModelFolder folder;
+  std::string dae = TextOfZoo("zoo_description/meshes/wedge.dae");
+  const auto put = [&dae](std::string_view before, std::string_view text) {
+    dae.insert(dae.find(before), text);
+  };
+  const auto effect = [](std::string_view name, std::string_view rgba) {
+    return "<effect id='" + std::string(name) +
+           "-fx'><profile_COMMON><technique sid='common'><lambert><diffuse><color>" +
+           std::string(rgba) + "</color></diffuse></lambert></technique></profile_COMMON></effect>";
+  };
+  put("<library_geometries>", "<library_effects>" + effect("orange", "1 0.5 0 1") +
+                                  effect("black", "0 0 0 1") +
+                                  "</library_effects><library_materials><material id='orange'>"
+                                  "<instance_effect url='#orange-fx'/></material><material "
+                                  "id='black'><instance_effect url='#black-fx'/></material>"
+                                  "</library_materials>");
+  // The first triangle of the ten is black.
+  const std::string_view all = "<triangles count=\"10\">";
+  dae.replace(dae.find(all), all.size(), "<triangles count=\"9\" material='orange'>");
+  const std::string_view first = "<p>0 2 1 ";
+  dae.replace(dae.find(first), first.size(), "<p>");
+  put("</mesh>",
+      "<triangles count='1' material='black'><input semantic='VERTEX' source='#wedge-vertices' "
+      "offset='0'/><p>0 2 1</p></triangles>");
+  const std::string_view instance = "<instance_geometry url=\"#wedge-mesh\"/>";
+  dae.replace(dae.find(instance), instance.size(),
+              "<instance_geometry url='#wedge-mesh'><bind_material><technique_common>"
+              "<instance_material symbol='orange' target='#orange'/><instance_material "
+              "symbol='black' target='#black'/></technique_common></bind_material>"
+              "</instance_geometry>");
+  const auto looks = ReadLooks(folder.Write("a.dae", dae), 100);
+  ASSERT_TRUE(looks && looks->colour);
+  EXPECT_THAT(looks->triangles, SizeIs(10));
+  EXPECT_NEAR((*looks->colour)[0], 1, 1e-6);
+  EXPECT_NEAR((*looks->colour)[1], 0.5, 1e-6);
+  EXPECT_NEAR((*looks->colour)[2], 0, 1e-6);
+}
+
 }  // namespace
 }  // namespace tcs

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -66,13 +67,11 @@ TEST(MeshLibrary, SaysWhatCannotBeUsed) {
   const ModelFolder folder;
   EXPECT_THAT(Complaint(folder.Path("none.stl")), HasSubstr("No such file"));
   EXPECT_THAT(Complaint(folder.Write("a.ply", "ply")),
-              HasSubstr("give a file of .stl, .obj or .dae"));
+              HasSubstr("give a file of .stl, .obj, .dae or .glb"));
   EXPECT_THAT(Complaint(folder.Write("a", "x")), HasSubstr("not a mesh that tcs reads"));
   EXPECT_THAT(Complaint(folder.Write("b.stl", "")), HasSubstr("cannot be used"));
   EXPECT_THAT(Complaint(folder.Write("c.stl", "solid x\nendsolid x\n")),
               HasSubstr("cannot be used"));
-  EXPECT_THAT(Complaint(folder.Write("d.stl", BinaryStl({kTetrahedron[0]}, 1))),
-              HasSubstr("its 3 vertices span no volume"));
   EXPECT_THAT(Complaint(folder.Write("e.obj",
                                      "v 0 0 0\nv 1 0 0\nv nan 0 1\nv 0 1 0\n"
                                      "f 1 2 3\nf 1 2 4\n")),
@@ -80,6 +79,26 @@ TEST(MeshLibrary, SaysWhatCannotBeUsed) {
   EXPECT_THAT(Complaint(folder.Write("f.dae", "<COLLADA")), HasSubstr("cannot be used"));
   std::filesystem::create_directory(folder.Path("g.stl"));
   EXPECT_THAT(Complaint(folder.Path("g.stl")), HasSubstr("is not a regular file"));
+}
+
+TEST(MeshLibrary, TakesWhatIsFlatAsAThinPlate) {
+  const ModelFolder folder;
+  const std::string path = folder.Write("a.stl", BinaryStl({kTetrahedron[0]}, 1));
+  MeshLibrary library;
+  const auto plate = library.Take(path, {1, 1, 1});
+  EXPECT_TRUE(library.IsFlat(path));
+  ASSERT_EQ(plate->vertices_m.size(), 6u);
+  for (const auto& vertex : plate->vertices_m) EXPECT_NEAR(std::abs(vertex[2]), 1.0 / 400, 1e-9);
+  const std::string whole = folder.Write("b.stl", BinaryStl(kTetrahedron, 4));
+  static_cast<void>(library.Take(whole, {1, 1, 1}));
+  EXPECT_FALSE(library.IsFlat(whole));
+}
+
+TEST(MeshLibrary, TakesNothingOfALine) {
+  const ModelFolder folder;
+  const std::string path = folder.Write(
+      "a.stl", BinaryStl({{0, 0, 0, 1, 0, 0, 2, 0, 0}, {1, 0, 0, 2, 0, 0, 3, 0, 0}}, 2));
+  EXPECT_EQ(MeshLibrary().Take(path, {1, 1, 1}), nullptr);
 }
 
 TEST(MeshLibrary, TakesNothingThatIsTooLarge) {

@@ -31,12 +31,18 @@ Loaded LoadFile(const std::string& path, const UrdfUse& use,
                 const std::vector<std::string>& packages) {
   MeshLibrary meshes;
   Loaded loaded;
-  auto result = LoadUrdf(path, use, PackagePath(packages), &meshes, &loaded.warnings);
-  if (const auto* error = std::get_if<LoadError>(&result)) {
-    loaded.mistake = error->message;
-    EXPECT_EQ(loaded.mistake.find('\n'), std::string::npos) << loaded.mistake;
+  UrdfRemarks remarks;
+  auto result = LoadUrdf(path, use, PackagePath(packages), &meshes, &remarks);
+  loaded.warnings = remarks.warnings;
+  loaded.details = remarks.details;
+  if (const auto* errors = std::get_if<std::vector<LoadError>>(&result)) {
+    for (const LoadError& error : *errors) {
+      EXPECT_EQ(error.message.find('\n'), std::string::npos) << error.message;
+      loaded.mistakes.push_back(error.message);
+    }
+    loaded.mistake = loaded.mistakes.at(0);
   } else {
-    loaded.model = std::get<RobotModel>(std::move(result));
+    loaded.model = std::get<LoadedUrdf>(std::move(result)).model;
   }
   return loaded;
 }
@@ -50,7 +56,9 @@ Loaded LoadText(const ModelFolder& folder, std::string_view text, const UrdfUse&
     }
   };
   shorten(&loaded.mistake);
-  for (std::string& warning : loaded.warnings) shorten(&warning);
+  for (auto* sentences : {&loaded.mistakes, &loaded.warnings, &loaded.details}) {
+    for (std::string& sentence : *sentences) shorten(&sentence);
+  }
   return loaded;
 }
 

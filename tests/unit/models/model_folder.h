@@ -28,8 +28,9 @@ class ModelFolder {
 // What came of a file.
 struct Loaded {
   RobotModel model;
-  std::string mistake;  // empty: none
-  std::vector<std::string> warnings;
+  std::string mistake;  // the first; empty: none
+  std::vector<std::string> mistakes;
+  std::vector<std::string> warnings, details;
 };
 Loaded LoadFile(const std::string& path, const UrdfUse& use = {},
                 const std::vector<std::string>& packages = {});

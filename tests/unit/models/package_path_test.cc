@@ -64,12 +64,62 @@ TEST_F(PackagePathTest, AFolderOfThePathMayBeThePackageItself) {
             folder_.Path("given/theirs/x"));
 }
 
+TEST_F(PackagePathTest, APackageIsWhatItsPackageXmlSays) {
+  // A clone under another name, deep in a workspace; beside it a folder that nobody looks into.
+  folder_.Write(
+      "ws/src/group/clone/package.xml",
+      "<?xml version='1.0'?><package format='2'><name> arm_description </name></package>");
+  folder_.Write("ws/src/group/clone/meshes/e.stl", "");
+  folder_.Write("ws/build/COLCON_IGNORE", "");
+  folder_.Write("ws/build/copy/package.xml", "<package><name>arm_description</name></package>");
+  folder_.Write("ws/build/copy/meshes/e.stl", "");
+  const std::string there = folder_.Path("ws/src/group/clone/meshes/e.stl");
+  EXPECT_EQ(Find("package://arm_description/meshes/e.stl", {folder_.Path("ws")}), there);
+  setenv("ROS_PACKAGE_PATH", folder_.Path("ws").c_str(), 1);
+  EXPECT_EQ(Find("package://arm_description/meshes/e.stl"), there);
+}
+
+// A repository of descriptions is cloned, and nothing is set.
+TEST_F(PackagePathTest, APackageIsFoundUpwardsFromTheDescription) {
+  folder_.Write("robots/.git/HEAD", "");
+  folder_.Write("robots/beside/meshes/f.stl", "");
+  folder_.Write("robots/more/grippers/hand/package.xml",
+                "<package><name>hand_description</name></package>");
+  folder_.Write("robots/more/grippers/hand/g.stl", "");
+  EXPECT_EQ(Find("package://beside/meshes/f.stl"), folder_.Path("robots/beside/meshes/f.stl"));
+  EXPECT_EQ(Find("package://hand_description/g.stl"),
+            folder_.Path("robots/more/grippers/hand/g.stl"));
+  // The description's own package under another name, without a package.xml.
+  EXPECT_EQ(Find("package://renamed/meshes/a.stl"), folder_.Path("robots/mine/meshes/a.stl"));
+}
+
+TEST_F(PackagePathTest, OfTwoFoldersTheOneThatHasTheFileIsTaken) {
+  folder_.Write("empty/theirs/other.stl", "");
+  EXPECT_EQ(Find("package://theirs/d.stl", {folder_.Path("empty"), folder_.Path("given")}),
+            folder_.Path("given/theirs/d.stl"));
+}
+
+TEST_F(PackagePathTest, NamesAreTakenAsTheyAreMeant) {
+  folder_.Write("robots/mine/meshes/left arm.stl", "");
+  const std::string there = folder_.Path("robots/mine/meshes/left arm.stl");
+  EXPECT_EQ(Find("package://mine/meshes/left%20arm.stl"), there);
+  EXPECT_EQ(Find("package:///mine//meshes/left arm.stl"), there);
+  EXPECT_EQ(Find("..\\meshes\\left arm.stl"), there);
+  EXPECT_EQ(Find("file://" + there), there);
+  EXPECT_EQ(Find("meshes/left%20arm.stl"), there);  // as seen from the package
+  folder_.Write("robots/mine/meshes/a%20b.stl", "");
+  EXPECT_EQ(Find("../meshes/a%20b.stl"), folder_.Path("robots/mine/meshes/a%20b.stl"));
+}
+
 TEST_F(PackagePathTest, WhatIsNotThereIsSaid) {
-  EXPECT_THAT(Find("package://others/x", {"/nowhere"}),
-              HasSubstr("'package://others/x' is in the package 'others', which is in none of 1 "
-                        "folders of packages"));
+  EXPECT_THAT(
+      Find("package://others/x", {"/nowhere"}),
+      HasSubstr("'package://others/x' is in the package 'others', which is in none of these "
+                "folders: /nowhere, " +
+                folder_.Path("robots/mine/urdf")));
   EXPECT_THAT(Find("package://others"), HasSubstr("names no file in a package"));
   EXPECT_THAT(Find("package:///x"), HasSubstr("names no file in a package"));
+  EXPECT_THAT(Find("package://../x"), HasSubstr("names no file in a package"));
   EXPECT_THAT(Find("package://"), HasSubstr("no file"));
   EXPECT_THAT(Find("http://example.org/x.stl"), HasSubstr("names no file on this computer"));
 }

@@ -1,6 +1,7 @@
 // Every mistake in a robot's description is one sentence that begins with its place.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include <ostream>
 #include <stdexcept>
@@ -51,7 +52,7 @@ constexpr std::string_view kGood = R"(<?xml version="1.0"?>
     <parent link="boom"/>
     <child link="hook"/>
     <axis xyz="1 0 0"/>
-    <limit lower="0" upper="1" effort="10" velocity="2"/>
+    <limit lower="-1" upper="1" effort="10" velocity="2"/>
     <mimic joint="mast" multiplier="0.5" offset="0.1"/>
   </joint>
 </robot>
@@ -83,7 +84,15 @@ struct Mistake {
 
 void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
 
-class UrdfMistakeTest : public testing::TestWithParam<Mistake> {};
+class UrdfMistakeTest : public testing::TestWithParam<Mistake> {
+ protected:
+  // Whatever the machine has: here there is no xacro.
+  UrdfMistakeTest() { setenv("PATH", "/nowhere", 1); }
+  ~UrdfMistakeTest() override { setenv("PATH", path_.c_str(), 1); }
+
+ private:
+  const std::string path_ = getenv("PATH");
+};
 
 TEST_P(UrdfMistakeTest, IsOneSentenceWithItsPlace) {
   const ModelFolder folder;
@@ -118,12 +127,11 @@ const Mistake kFileMistakes[] = {
      3,
      {"xacro is not expanded", "`xacro robot.urdf > robot.expanded.urdf`"}},
     {"XacroValue", "value=\"2.0\"", "value=\"${mass}\"", 11, {"xacro is not expanded"}},
-    {"DocumentType",
+    {"DocumentTypeWithEntities",
      "<?xml version=\"1.0\"?>",
      "<!DOCTYPE robot [<!ENTITY a \"b\">]>",
      1,
      {"document type", "remove it"}},
-    {"NoName", "<robot name=\"crane\"", "<robot", 2, {"this <robot> has no name"}},
 };
 
 const Mistake kLinkMistakes[] = {
@@ -142,34 +150,12 @@ const Mistake kLinkMistakes[] = {
     {"MassOverflows", "\"2.0\"", "\"1e999\"", 11, {"'1e999'", "finite"}},
     {"MassWithUnit", "\"2.0\"", "\"2.0 kg\"", 11, {"'2.0 kg'", "finite number"}},
     {"NegativeMass", "\"2.0\"", "\"-2\"", 11, {"'-2'", "0 or more"}},
-    {"ZeroMass", "\"2.0\"", "\"0\"", 8, {"link 'boom'", "mass must be positive"}},
-    {"TwoMasses",
-     "<mass value=\"2.0\"/>",
-     "<mass value=\"2\"/><mass value=\"3\"/>",
-     11,
-     {"second <mass>"}},
     {"MassWithoutValue",
      "<mass value=\"2.0\"/>",
      "<mass/>",
      11,
      {"<mass> in link 'boom' has no value"}},
     {"InertiaLacksAnElement", "ixx=\"0.2\" ", "", 12, {"<inertia> in link 'boom' has no ixx"}},
-    {"ImpossibleInertia", "izz=\"0.1\"", "izz=\"0.5\"", 8, {"link 'boom'", "exceeds the sum"}},
-    {"NegativeInertia", "izz=\"0.1\"", "izz=\"-0.1\"", 8, {"link 'boom'", "positive"}},
-    {"IndefiniteInertia", "ixx=\"0.2\" ixy=\"0\"", "ixx=\"0.2\" ixy=\"0.3\"", 8, {"link 'boom'"}},
-    {"NoInertialOfWhatMoves",
-     "<inertial><mass value=\"0.5\"/><inertia ixx=\"0.01\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" "
-     "iyz=\"0\" "
-     "izz=\"0.01\"/></inertial>",
-     "",
-     27,
-     {"link 'hook' moves", "has no mass"}},
-    {"NothingForAnInertialOfWhatMoves",
-     "<mass value=\"0.5\"/><inertia ixx=\"0.01\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" "
-     "izz=\"0.01\"/>",
-     "<mass value=\"0\"/><inertia ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"0\" iyz=\"0\" izz=\"0\"/>",
-     27,
-     {"link 'hook' moves", "has no mass"}},
     {"TwoNumbersForThree",
      "xyz=\"0 0 0.5\" rpy",
      "xyz=\"0 0.5\" rpy",
@@ -196,12 +182,11 @@ const Mistake kLinkMistakes[] = {
      "<box size=\"1 1 1\"/><sphere radius=\"1\"/>",
      6,
      {"more than one shape"}},
-    {"FlatBox", "\"1 1 0.1\"", "\"1 1 0\"", 6, {"three positive numbers"}},
     {"NegativeRadius",
      "radius=\"0.1\"",
      "radius=\"-0.1\"",
      16,
-     {"radius of <cylinder>", "positive"}},
+     {"radius of <cylinder>", "0 or more"}},
     {"NoSuchMesh",
      "<box size=\"1 1 0.1\"/>",
      "<mesh filename=\"none.stl\"/>",
@@ -216,7 +201,7 @@ const Mistake kLinkMistakes[] = {
      "<box size=\"1 1 0.1\"/>",
      "<mesh filename=\"robot.urdf\"/>",
      6,
-     {"not a mesh that tcs reads", ".stl, .obj or .dae"}},
+     {"not a mesh that tcs reads", ".stl, .obj, .dae or .glb"}},
     {"MeshIsAFolder",
      "<box size=\"1 1 0.1\"/>",
      "<mesh filename=\"/tmp/.stl\"/>",
@@ -250,44 +235,18 @@ const Mistake kJointMistakes[] = {
      "<child link=\"x\"/>",
      22,
      {"child 'x', but there is no such"}},
-    {"NoLimit",
-     "    <limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/>\n",
-     "",
-     19,
-     {"joint 'mast' has no <limit>", "continuous"}},
-    {"NoEffort",
-     "lower=\"-1\" upper=\"1\" effort=\"10\"",
-     "lower=\"-1\" upper=\"1\"",
-     24,
-     {"has no effort"}},
-    {"NegativeEffort",
-     "upper=\"1\" effort=\"10\" velocity=\"2\"/>\n    <dyn",
-     "upper=\"1\" effort=\"-10\" velocity=\"2\"/>\n    <dyn",
-     24,
-     {"0 or more"}},
-    {"LimitsTurnedRound", "lower=\"-1\"", "lower=\"2\"", 19, {"joint 'mast'", "not below"}},
     {"NoDirection", "<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 0\"/>", 19, {"no direction"}},
     {"NegativeDamping",
      "damping=\"0.1\"",
      "damping=\"-0.1\"",
      25,
      {"damping of <dynamics>", "0 or more"}},
-    {"MimicsNobody",
-     "mimic joint=\"mast\"",
-     "mimic joint=\"mats\"",
-     35,
-     {"joint 'trolley' follows 'mats'", "did you mean 'mast'?"}},
-    {"MimicsItself", "mimic joint=\"mast\"", "mimic joint=\"trolley\"", 30, {"follows itself"}},
+    {"MimicsItself", "mimic joint=\"mast\"", "mimic joint=\"trolley\"", 35, {"follows itself"}},
     {"TwoRoots",
      "<parent link=\"boom\"/>\n    <child link=\"hook\"/>",
      "<parent link=\"base\"/>\n    <child link=\"boom\"/>",
      8,
      {"child of joint 'mast' and of joint 'trolley'"}},
-    {"LinkThatHangsOnNothing",
-     "  <link name=\"hook\">",
-     "  <link name=\"other\"/>\n  <link name=\"hook\">",
-     27,
-     {"no joint joins link 'other'", "'base' is the root"}},
     {"JointOnItself", "<parent link=\"boom\"/>", "<parent link=\"hook\"/>", 27, {"loop", "'hook'"}},
     {"LoopWithoutARoot",
      "</robot>",
@@ -304,11 +263,39 @@ INSTANTIATE_TEST_SUITE_P(File, UrdfMistakeTest, testing::ValuesIn(kFileMistakes)
 INSTANTIATE_TEST_SUITE_P(Links, UrdfMistakeTest, testing::ValuesIn(kLinkMistakes), NameOf);
 INSTANTIATE_TEST_SUITE_P(Joints, UrdfMistakeTest, testing::ValuesIn(kJointMistakes), NameOf);
 
-TEST(Urdf, AFreeRootNeedsMassAndAFixedOneDoesNot) {
+TEST(Urdf, AllMistakesAreSaidInTheOrderOfTheirLines) {
   const ModelFolder folder;
-  EXPECT_EQ(LoadText(folder, kGood, {true}).mistake, "");
-  EXPECT_THAT(LoadText(folder, kGood, {false}).mistake,
-              HasSubstr("robot.urdf:4: link 'base' moves (its base is free) but has no mass"));
+  std::string text = With("value=\"2.0\"", "value=\"heavy\"");
+  text.replace(text.find("link=\"base\""), 11, "link=\"bass\"");
+  text.replace(text.find("\"prismatic\""), 11, "\"sliding\"");
+  text.replace(text.find("rpy=\"0 0 0\""), 11, "rpy=\"0 0\"");
+  EXPECT_THAT(LoadText(folder, text, {true}).mistakes,
+              ElementsAre(HasSubstr(":10: rpy of <origin>"), HasSubstr(":11: value of <mass>"),
+                          HasSubstr(":21: joint 'mast' has the parent 'bass'"),
+                          HasSubstr(":30: joint 'trolley' has the unknown type 'sliding'")));
+}
+
+// Both meshes cannot be had.
+TEST(Urdf, AllMissingMeshesAreSaid) {
+  const ModelFolder folder;
+  std::string text = With("<box size=\"1 1 0.1\"/>", "<mesh filename=\"none.stl\"/>");
+  const std::string_view cylinder = "<cylinder radius=\"0.1\" length=\"1\"/>";
+  text.replace(text.find(cylinder), cylinder.size(), "<mesh filename=\"package://none/b.stl\"/>");
+  EXPECT_THAT(LoadText(folder, text, {true}).mistakes,
+              ElementsAre(HasSubstr(":6: link 'base': "), HasSubstr(":16: link 'boom': ")));
+}
+
+TEST(Urdf, AFreeRootWithoutMassIsFixedToTheWorld) {
+  const ModelFolder folder;
+  EXPECT_THAT(LoadText(folder, kGood, {true}).warnings, IsEmpty());
+  const Loaded loaded = LoadText(folder, kGood, {false});
+  EXPECT_EQ(loaded.mistake, "");
+  EXPECT_TRUE(loaded.model.has_fixed_base);
+  EXPECT_THAT(
+      loaded.warnings,
+      ElementsAre("robot.urdf:4: link 'base' is the root and has no mass, so it is fixed to "
+                  "the world; write fixed_base: true in the scenario, or give it an "
+                  "inertial"));
 }
 
 struct Oddity {
@@ -348,10 +335,6 @@ const Oddity kOddities[] = {
      "robot.urdf:2: the attribute 'version' of <robot> is not understood and left out"},
     {"ControlCharacters", "<visual/>", "<a\xc2\x9b/>",
      "robot.urdf:5: <a\\xc2\\x9b> is not understood and left out"},
-    {"NoRange", "lower=\"-1\" upper=\"1\" ", "",
-     "robot.urdf:19: joint 'mast' cannot move: both its limits are 0, as they are where they are "
-     "not "
-     "given"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, UrdfOddityTest, testing::ValuesIn(kOddities), OddityLabel);
@@ -379,7 +362,10 @@ TEST(Urdf, NumbersMayStandAsInXml) {
 
 TEST(Urdf, AContinuousJointHasNoRangeWhateverItsLimitSays) {
   const ModelFolder folder;
-  const Loaded loaded = LoadText(folder, With("\"revolute\"", "\"continuous\""), {true});
+  std::string text = With("\"revolute\"", "\"continuous\"");
+  text.erase(text.find("    <mimic"),
+             text.find("/>", text.find("<mimic")) + 2 - text.find("    <mimic"));
+  const Loaded loaded = LoadText(folder, text, {true});
   EXPECT_EQ(loaded.mistake, "");
   const JointLimits& limits = JointNamed(loaded.model, "mast").limits;
   EXPECT_EQ(limits.lower, -kNoLimit);

@@ -38,7 +38,7 @@ dynamics:
 bodies:
   b: {mass: 1, inertia: [1, 1, 1], drag: {QQ}, QQ}
 models:
-  cart: {urdf: cart.urdf, at: {QQ}, rotors: {m: {link: hull, at: {QQ}, thrust: 1, QQ}, n: {link: hull, thrust: 1}}, QQ}
+  cart: {urdf: cart.urdf, at: {QQ}, self_collision: true, collisions: {QQ}, rotors: {m: {link: hull, at: {QQ}, thrust: 1, QQ}, n: {link: hull, thrust: 1}}, QQ}
   box: {box: [1, 1, 1], mass: 1, QQ}
   ball: {sphere: 1, mass: 1, QQ}
   can: {cylinder: {radius: 1, length: 1, QQ}, mass: 1, QQ}

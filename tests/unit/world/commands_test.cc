@@ -171,6 +171,35 @@ TEST_F(ActuatorsTest, RotorsHaveSpeedsAlone) {
       ElementsAre("channel motors: a command sets something other than a speed for rotor 'right'"));
 }
 
+TEST(CommandsToFollowers, AreTakenButForTheFollowers) {
+  std::vector<std::string> warnings;
+  std::vector<std::pair<int, double>> driven;
+  Commands commands{[&](const std::string& text) { warnings.push_back(text); },
+                    {},
+                    [&](VirtualTime, VirtualDuration, int joint, const JointDrive& drive) {
+                      driven.emplace_back(joint, drive.position);
+                    }};
+  CommandChannelSpec gripper{.name = "gripper"};
+  gripper.joints = JointDriveSpec{{"hand", {4}, {"left"}, {"right"}},
+                                  JointQuantity::kPosition,
+                                  {{100, 10}},
+                                  {{.lower = 0, .upper = 0.04}}};
+  commands.Open({gripper});
+  const auto names = commands.GoalsOf(0);
+  EXPECT_THAT(names->names, ElementsAre("left", "right"));
+  EXPECT_THAT(names->Driven(), ElementsAre("left"));
+  for (const double position : {0.01, 0.05}) {
+    commands.Take(0, AtMs(1),
+                  std::vector<JointGoal>{{.joint = 1, .position = position},
+                                         {.joint = 0, .position = position}});
+  }
+  EXPECT_EQ(commands.taken(), 2);
+  EXPECT_THAT(driven, ElementsAre(Pair(4, 0.01), Pair(4, 0.04)));
+  EXPECT_THAT(warnings, ElementsAre("channel gripper: commands name joint 'right', which follows "
+                                    "another one and is driven by that alone: what they say of it "
+                                    "is left out"));
+}
+
 TEST_F(ActuatorsTest, LinksArePushedWithinTheLimits) {
   commands_.Take(2, AtMs(1), {.force_n = {3, 0, -3}, .torque_nm = {0, 0, 5}});
   EXPECT_THAT(pushed_, ElementsAre(Wrench{.force_n = {1, 0, -1}, .torque_nm = {0, 0, 5}}));

@@ -1,4 +1,4 @@
-#include "simbody_bridge/simbody/tree/servo_motion.h"
+#include "simbody_bridge/joints/servo_motion.h"
 
 namespace tcs {
 namespace {
@@ -17,7 +17,11 @@ JointMotion Answer(const ServoStart& start, const LinearResponse& response, cons
 JointMotion MotionAfter(const ServoStart& start, const ServoPush& push, double after_s,
                         ResponseFinder* finder) {
   LinearResponse response;
-  finder->Find(start.stiffness, start.damping, after_s, &response, nullptr);
+  if (start.has_springs) {
+    finder->Find(start.stiffness, start.damping, after_s, &response, nullptr);
+  } else {
+    FindResponse(start.modes, after_s, &response);
+  }
   const double share = after_s / push.seconds;
   return Answer(start, response, share * push.f1, share * share * push.f2);
 }
@@ -25,9 +29,15 @@ JointMotion MotionAfter(const ServoStart& start, const ServoPush& push, double a
 // The springs push back as much as the joints go on as fast as they are; what they do on top of
 // that is in the response.
 const JointMotion& ServoMotion::Middle(double h) {
-  finder_.Find(start_.stiffness, start_.damping, h, &whole_, &half_);
-  drift_ = -h * (start_.stiffness * start_.speed);
   none_.setZero(start_.speed.size());
+  if (start_.has_springs) {
+    finder_.Find(start_.stiffness, start_.damping, h, &whole_, &half_);
+    drift_ = -h * (start_.stiffness * start_.speed);
+  } else {
+    FindResponse(start_.modes, h, &whole_);
+    FindResponse(start_.modes, h / 2, &half_);
+    drift_ = none_;
+  }
   at_middle_ = Answer(start_, half_, drift_ / 2, none_);
   return at_middle_;
 }
@@ -50,6 +60,10 @@ const JointMotion& ServoMotion::Arrive(const VectorXd& end_rate) {
   return arrived_;
 }
 
+ServoPush ServoMotion::Push() const {
+  return {whole_.seconds, drift_ + 4 * middle_ - end_, 2 * end_ - 4 * middle_};
+}
+
 // The value in the middle is off by what the one at the end is, divided by four.
 ServoPush ServoMotion::PushUntil(const VectorXd& rate) const {
   const VectorXd last = Remainder(rate, arrived_);
@@ -62,6 +76,9 @@ JointMotion ServoMotion::Along(const ServoPush& push) const {
 }
 
 VectorXd ServoMotion::Remainder(const VectorXd& rate, const JointMotion& motion) const {
+  if (!start_.has_springs) {
+    return rate - start_.rate + start_.damping * (motion.speed - start_.speed);
+  }
   return rate - start_.rate + start_.stiffness * motion.way +
          start_.damping * (motion.speed - start_.speed);
 }

@@ -1,25 +1,32 @@
-// Steps of an island of models in which servos hold joints: exponential Runge-Kutta 3(2), in which
-// drives, damping, friction and stops act in closed form (servo_motion.h). Like all steps they
-// are functions of a state and of what acts.
+// Steps of an island of models in which servos hold joints, or these have damping or friction:
+// exponential Runge-Kutta 3(2), in which drives, damping and stops act in closed form
+// (joints/servo_motion.h), and friction as it is: a joint slides, or is held (joints/joint_part.h).
+// Like all steps they are functions of a state and of what acts.
 #pragma once
 
 #include <Eigen/Core>
 #include <span>
 #include <vector>
 
+#include "simbody_bridge/joints/joint_part.h"
 #include "simbody_bridge/simbody/tree/controlled_steps.h"
-#include "simbody_bridge/simbody/tree/servo_motion.h"
 
 namespace tcs {
 
-class ServoSteps : public ControlledSteps<ServoSteps> {
+class JointSteps : public ControlledSteps<JointSteps> {
  public:
-  // Whether a servo acts, on an island of models that are not too large.
-  static bool AreFor(const SimbodyTree& tree, std::span<const Wrench> acting);
+  enum class Fit {
+    kNotNeeded,  // neither servos nor damping nor friction
+    kFits,
+    kTooLarge,  // servos hold so many joints at once that short steps are cheaper
+  };
+  Fit FitOf(const SimbodyTree& tree, std::span<const Wrench> acting);
 
   // Writes the step's course, too.
   void TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
                       double limit_s);
+  // As long as its limit, in pieces where joints come to rest or break away.
+  void TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
 
   // Whether it was TakeControlled that took the step.
   static bool Took(const IslandStep& step) { return !step.course.empty(); }
@@ -28,31 +35,29 @@ class ServoSteps : public ControlledSteps<ServoSteps> {
               std::vector<double>* state);
 
  private:
-  friend class ControlledSteps<ServoSteps>;
+  friend class ControlledSteps<JointSteps>;
 
-  // A model: others do not push its joints, so that it has a mass matrix of its own.
-  struct Part {
-    std::vector<std::size_t> speeds;  // of all
-    Eigen::MatrixXd reduction;        // see mimics.h
-    ServoMotion motion;
-    ServoPush push;
-  };
   void Divide(const SimbodyTree& tree);
+  bool IsLarge(const JointPart& part) const;
   void Begin(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
-  void Linearise(SimbodyTree& tree, std::span<const Wrench> acting, const IslandStep& step);
+  void FindMass(SimbodyTree& tree, std::span<const double> state);
+  Eigen::MatrixXd MassOf(const JointPart& part) const;
   void Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h);
+  void EndAtEvent(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
   void Place(const SimbodyTree& tree, const IslandStep& step, std::span<double> state);
   double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double h);
-  void WriteCourse(const SimbodyTree& tree, IslandStep& step);
+  void WriteCourse(SimbodyTree& tree, IslandStep& step);
 
-  std::vector<Part> parts_;
+  std::vector<JointPart> parts_;  // what pushes each other's joints is one of them
+  bool is_divided_ = false, has_own_ = false, needs_masses_ = false;
   std::size_t coordinates_ = 0;
   // Memory of the functions above.
-  SimTK::Matrix mass_;
+  Eigen::MatrixXd mass_;
   std::vector<double> by_speed_, by_coordinate_;
   std::vector<double> state_, middle_rate_, end_rate_, error_;
   std::vector<double> way_, speed_;                    // of all
   std::vector<double> turn_, middle_turn_, end_turn_;  // how coordinates grow
+  IslandStep piece_;
   ServoStart start_;
   ServoPush push_;
   ResponseFinder finder_;

@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-#include "simbody_bridge/simbody/tree/linear_response.h"
+#include "simbody_bridge/joints/linear_response.h"
 
 namespace tcs {
 
@@ -23,7 +23,9 @@ struct JointMotion {
 
 // Springs and dampers by the mass, and how a step began.
 struct ServoStart {
-  Eigen::MatrixXd stiffness, damping;
+  bool has_springs = true;
+  Eigen::MatrixXd stiffness, damping;  // of no springs the stiffness is 0, and not kept
+  DampedModes modes;                   // of the dampers, where there are no springs
   Eigen::VectorXd speed, rate;
 };
 
@@ -51,7 +53,12 @@ class ServoMotion {
   const JointMotion& Arrive(const Eigen::VectorXd& end_rate);
   // How far from there the method of second order leads that is in it.
   const JointMotion& error() const { return error_; }
+  // Those of the last try.
+  const JointMotion& middle() const { return at_middle_; }
+  const JointMotion& arrived() const { return arrived_; }
 
+  // What led to where it arrived.
+  ServoPush Push() const;
   // In the course of the step, of the same order as where it leads; `rate` is what it is there.
   // Without springs and dampers that is the cubic through both ends and their derivatives.
   ServoPush PushUntil(const Eigen::VectorXd& rate) const;

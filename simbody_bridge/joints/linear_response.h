@@ -13,20 +13,34 @@
 
 namespace tcs {
 
+// Dampers without springs, by the modes in which they let the joints go on: D = onto * from, and
+// from * onto is diagonal. For a diagonal of dampers and a mass matrix that is one symmetric
+// eigenproblem of as many rows as there are dampers; then all else is a function of single rates.
+struct DampedModes {
+  Eigen::VectorXd rates;  // 1/s
+  Eigen::MatrixXd onto, from;
+};
+
+// Of the speeds that have them: `by_mass` is the inverse of the mass matrix, `dampers` those of
+// each speed, at least 0.
+void FindModes(const Eigen::MatrixXd& by_mass, const Eigen::VectorXd& dampers, DampedModes* modes);
+
 // To a push that takes `seconds`.
 struct LinearResponse {
   double seconds = 0;
   std::array<Eigen::MatrixXd, 4> b;
+  // Without springs: B_k is 1 / (k+1)! and what each mode adds. Whose they are outlives this.
+  const DampedModes* modes = nullptr;
+  std::array<Eigen::VectorXd, 4> of_mode;
 
   Eigen::VectorXd Way(const Eigen::VectorXd& f0, const Eigen::VectorXd& f1,
-                      const Eigen::VectorXd& f2) const {
-    return seconds * seconds * (b[1] * f0 + b[2] * f1 + 2 * (b[3] * f2));
-  }
+                      const Eigen::VectorXd& f2) const;
   Eigen::VectorXd Speed(const Eigen::VectorXd& f0, const Eigen::VectorXd& f1,
-                        const Eigen::VectorXd& f2) const {
-    return seconds * (b[0] * f0 + b[1] * f1 + 2 * (b[2] * f2));
-  }
+                        const Eigen::VectorXd& f2) const;
 };
+
+// The same for dampers alone, however many speeds there are, in their number squared.
+void FindResponse(const DampedModes& modes, double seconds, LinearResponse* response);
 
 // Finds responses, by their series for a fraction of the time and by doubling that (Skaflestad and
 // Wright, The scaling and modified squaring method for matrix functions related to the exponential,

@@ -1,0 +1,326 @@
+#include "simbody_bridge/joints/joint_part.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "simbody_bridge/joints/dry_friction.h"
+
+namespace tcs {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+// What comes to rest within this time rests at once: steps are no shorter.
+constexpr double kInstantS = 1e-9;
+// A joint that has to go back as slowly as this has come to rest.
+constexpr double kRestRadps = 1e-10;
+// A joint that breaks away in this last part of a step does so at its end.
+constexpr double kLastPart = 0.01;
+// The shortest part of a step that ends because a joint breaks away, or turns round at once.
+constexpr double kLeastPart = 1.0 / 16;
+
+MatrixXd InverseOf(const MatrixXd& matrix) {
+  return matrix.llt().solve(MatrixXd::Identity(matrix.rows(), matrix.cols()));
+}
+
+}  // namespace
+
+// In the speeds that mimic no other.
+struct JointPart::Reduced {
+  MatrixXd mass, by_mass;
+  VectorXd speed, force;  // the force without friction
+};
+
+JointPart::JointPart(std::vector<std::size_t> places, MatrixXd reduction, VectorXd friction,
+                     bool keeps_mimics)
+    : places_(std::move(places)),
+      reduction_(std::move(reduction)),
+      friction_(std::move(friction)),
+      bounds_(reduction_.cwiseAbs().transpose() * friction_),
+      has_friction_(bounds_.size() > 0 && bounds_.maxCoeff() > 0),
+      needs_masses_(has_friction_ || (!keeps_mimics && reduction_.rows() != reduction_.cols())) {
+  for (Index column = 0; column < reduction_.cols(); ++column) {
+    Index leader = 0;
+    while (reduction_(leader, column) != 1) ++leader;
+    leaders_.push_back(leader);
+  }
+}
+
+VectorXd JointPart::Gather(const double* all) const {
+  VectorXd own(static_cast<Index>(places_.size()));
+  for (std::size_t i = 0; i < places_.size(); ++i) own[static_cast<Index>(i)] = all[places_[i]];
+  return own;
+}
+
+void JointPart::Scatter(const VectorXd& own, double* all) const {
+  for (std::size_t i = 0; i < places_.size(); ++i) all[places_[i]] = own[static_cast<Index>(i)];
+}
+
+// Which way the joint slides; 0: it does not, or has no friction.
+double JointPart::SignOf(Index column) const {
+  const Slip slip = slips_[static_cast<std::size_t>(column)];
+  return slip == Slip::kForwards ? 1 : slip == Slip::kBackwards ? -1 : 0;
+}
+
+JointPart::Reduced JointPart::Reduce(const Start& start) const {
+  Reduced reduced;
+  reduced.mass = reduction_.transpose() * start.mass * reduction_;
+  reduced.by_mass = InverseOf(reduced.mass);
+  reduced.force = reduction_.transpose() * (start.mass * start.rate);
+  reduced.speed = start.speed(leaders_);
+  return reduced;
+}
+
+void JointPart::FindSlips(Reduced* reduced) {
+  const Index columns = reduction_.cols();
+  slips_.assign(static_cast<std::size_t>(columns), Slip::kFree);
+  std::vector<Index> resting;
+  for (Index column = 0; column < columns; ++column) {
+    if (bounds_[column] <= 0) continue;
+    Slip& slip = slips_[static_cast<std::size_t>(column)];
+    const double speed = reduced->speed[column];
+    slip = speed > 0 ? Slip::kForwards : speed < 0 ? Slip::kBackwards : Slip::kHeld;
+    reduced->force[column] -= SignOf(column) * bounds_[column];
+    if (slip == Slip::kHeld) resting.push_back(column);
+  }
+  if (resting.empty()) return;
+  const VectorXd rates = reduced->by_mass(resting, Eigen::all) * reduced->force;
+  VectorXd hold;
+  FindHolds(reduced->by_mass(resting, resting), rates, bounds_(resting), &hold);
+  for (std::size_t i = 0; i < resting.size(); ++i) {
+    const double bound = bounds_[resting[i]], effort = hold[static_cast<Index>(i)];
+    if (std::abs(effort) < bound) continue;
+    slips_[static_cast<std::size_t>(resting[i])] = effort < 0 ? Slip::kForwards : Slip::kBackwards;
+  }
+}
+
+// Of those that come to rest within an instant; the others then have the speeds that the blow
+// leaves them. Whether there are any.
+bool JointPart::Arrest(const Start& start, Reduced* reduced, Start* arrested) const {
+  const VectorXd rates = reduced->by_mass * reduced->force;
+  const VectorXd damping =
+      (reduction_.transpose() * start.by_speed.asDiagonal() * reduction_).diagonal();
+  std::vector<Index> resting, moving;
+  bool is_new = false;
+  for (Index column = 0; column < reduction_.cols(); ++column) {
+    const double sign = SignOf(column), speed = reduced->speed[column] * sign;
+    bool rests = bounds_[column] > 0 && reduced->speed[column] == 0;
+    if (speed > 0) {
+      // As if the others stood still meanwhile.
+      const double mass = 1 / reduced->by_mass(column, column);
+      const double against = -sign * rates[column] * mass - damping[column] * speed;
+      const double decay = damping[column] / mass;
+      const double rest_s = against <= 0 ? kNever
+                            : damping[column] > 0
+                                ? std::log1p(damping[column] * speed / against) / decay
+                                : speed * mass / against;
+      rests = rest_s < kInstantS;
+      is_new = is_new || rests;
+    }
+    (rests ? resting : moving).push_back(column);
+  }
+  if (!is_new) return false;
+  const VectorXd momentum = reduced->mass * reduced->speed;
+  VectorXd speed = VectorXd::Zero(reduced->speed.size());
+  if (!moving.empty()) {
+    const VectorXd left =
+        MatrixXd(reduced->mass(moving, moving)).llt().solve(VectorXd(momentum(moving)));
+    speed(moving) = left;
+  }
+  *arrested = start;
+  arrested->speed = reduction_ * speed;
+  const VectorXd lost = arrested->speed - start.speed;
+  arrested->rate -= InverseOf(start.mass) * start.by_speed.cwiseProduct(lost);
+  return true;
+}
+
+VectorXd JointPart::Sliding() const {
+  VectorXd sliding = VectorXd::Zero(reduction_.rows());
+  for (Index row = 0; row < reduction_.rows(); ++row) {
+    for (Index column = 0; column < reduction_.cols(); ++column) {
+      const double share = reduction_(row, column);
+      if (share == 0) continue;
+      sliding[row] -= friction_[row] * SignOf(column) * (share > 0 ? 1 : -1);
+    }
+  }
+  return sliding;
+}
+
+void JointPart::Begin(const Start& start) {
+  const Start* from = &start;
+  Start arrested;
+  if (has_friction_) {
+    Reduced reduced = Reduce(start);
+    FindSlips(&reduced);
+    if (Arrest(start, &reduced, &arrested)) {
+      from = &arrested;
+      reduced = Reduce(arrested);
+      FindSlips(&reduced);
+    }
+    sliding_ = Sliding();
+    std::vector<Index> moving;
+    for (Index column = 0; column < reduction_.cols(); ++column) {
+      if (slips_[static_cast<std::size_t>(column)] != Slip::kHeld) moving.push_back(column);
+    }
+    moving_ = reduction_(Eigen::all, moving);
+  } else {
+    slips_.assign(static_cast<std::size_t>(reduction_.cols()), Slip::kFree);
+    moving_ = reduction_;
+    sliding_.setZero(reduction_.rows());
+  }
+  rest_at_s_.assign(slips_.size(), kNever);
+  Linearise(*from);
+}
+
+// Joints that mimic others move as these do: the mass is that of both.
+void JointPart::Linearise(const Start& from) {
+  ServoStart& start = motion_.start();
+  MatrixXd by_mass = MatrixXd::Zero(reduction_.rows(), reduction_.rows());
+  if (moving_.cols() > 0) {
+    by_mass =
+        moving_ *
+        (moving_.transpose() * from.mass * moving_).llt().solve(MatrixXd(moving_.transpose()));
+  }
+  start.damping = by_mass * from.by_speed.asDiagonal();
+  start.has_springs = !from.by_coordinate.isZero(0);
+  if (start.has_springs) {
+    start.stiffness = by_mass * from.by_coordinate.asDiagonal();
+  } else {
+    FindModes(by_mass, from.by_speed, &start.modes);
+  }
+  start.speed = from.speed;
+  start.rate = Rate(from.mass, from.rate);
+  excess_[0] = Excess(from.mass, from.rate, start.rate);
+}
+
+VectorXd JointPart::Rate(const MatrixXd& mass, const VectorXd& rate) const {
+  if (!needs_masses_) return rate;
+  if (moving_.cols() == 0) return VectorXd::Zero(rate.size());
+  return moving_ * (moving_.transpose() * mass * moving_)
+                       .llt()
+                       .solve(moving_.transpose() * (mass * rate + sliding_));
+}
+
+VectorXd JointPart::Excess(const MatrixXd& mass, const VectorXd& rate,
+                           const VectorXd& with_friction) const {
+  VectorXd excess = VectorXd::Constant(reduction_.cols(), -1);
+  if (!has_friction_ || moving_.cols() == reduction_.cols()) return excess;
+  const VectorXd held = reduction_.transpose() * (mass * (with_friction - rate) - sliding_);
+  for (Index column = 0; column < excess.size(); ++column) {
+    if (slips_[static_cast<std::size_t>(column)] != Slip::kHeld) continue;
+    excess[column] = std::abs(held[column]) / bounds_[column] - 1;
+  }
+  return excess;
+}
+
+const JointMotion& JointPart::Middle(double h) {
+  h_ = h;
+  return motion_.Middle(h);
+}
+
+const JointMotion& JointPart::End(const MatrixXd& middle_mass, const VectorXd& middle_rate) {
+  const VectorXd rate = Rate(middle_mass, middle_rate);
+  excess_[1] = Excess(middle_mass, middle_rate, rate);
+  return motion_.End(rate);
+}
+
+const JointMotion& JointPart::Arrive(const MatrixXd& end_mass, const VectorXd& end_rate) {
+  const VectorXd rate = Rate(end_mass, end_rate);
+  excess_[2] = Excess(end_mass, end_rate, rate);
+  return motion_.Arrive(rate);
+}
+
+double JointPart::FirstEvent() {
+  double first_s = h_;
+  if (!has_friction_) return first_s;
+  push_ = motion_.Push();
+  for (Index column = 0; column < reduction_.cols(); ++column) {
+    const double sign = SignOf(column);
+    if (sign == 0) continue;
+    const Index leader = leaders_[static_cast<std::size_t>(column)];
+    const double end = sign * motion_.arrived().speed[leader];
+    const double middle = sign * motion_.middle().speed[leader];
+    double& rest_s = rest_at_s_[static_cast<std::size_t>(column)];
+    if (end < -kRestRadps) {
+      rest_s = Crossing(column, h_);
+    } else if (middle < -kRestRadps && sign * SpeedAfter(column, h_ / 2) < 0) {
+      rest_s = Crossing(column, h_ / 2);
+    } else if (end < 0) {
+      rest_s = h_;
+    }
+    first_s = std::min(first_s, rest_s);
+  }
+  return std::min(first_s, FirstBreakaway());
+}
+
+double JointPart::SpeedAfter(Index column, double seconds) {
+  return MotionAfter(motion_.start(), push_, seconds, &finder_)
+      .speed[leaders_[static_cast<std::size_t>(column)]];
+}
+
+// What slides comes to rest before `until_s`, perhaps at once: first the decade of that time is
+// looked for, then it is found by regula falsi (Illinois).
+double JointPart::Crossing(Index column, double until_s) {
+  const double sign = SignOf(column);
+  const double start = sign * motion_.start().speed[leaders_[static_cast<std::size_t>(column)]];
+  double low = 0, high = until_s;
+  double at_low = start, at_high = sign * SpeedAfter(column, until_s);
+  while (high > 10 * std::max(low, kInstantS / 10)) {
+    const double between = std::sqrt(std::max(low, kInstantS / 10) * high);
+    const double at = sign * SpeedAfter(column, between);
+    (at > 0 ? low : high) = between;
+    (at > 0 ? at_low : at_high) = at;
+  }
+  constexpr int kTries = 40;
+  for (int i = 0; i < kTries && high - low > kInstantS / 4 && at_low > 0; ++i) {
+    const double between = low + (high - low) * at_low / (at_low - at_high);
+    const double at = sign * SpeedAfter(column, between);
+    if (std::abs(at) < kRestRadps) return between;
+    if (at > 0) {
+      low = between, at_low = at, at_high /= 2;
+    } else {
+      high = between, at_high = at, at_low /= 2;
+    }
+  }
+  return start > 0 ? high : std::max(high, kLeastPart * h_);
+}
+
+// By the parabola through what is known of each joint that is held.
+double JointPart::FirstBreakaway() const {
+  constexpr double kRounding = 1e-9;
+  constexpr int kLooks = 64;
+  double first = 1;
+  for (Index column = 0; column < reduction_.cols(); ++column) {
+    const double start = std::min(excess_[0][column], 0.0);
+    const double middle = excess_[1][column], end = excess_[2][column];
+    if (!(middle > kRounding) && !(end > kRounding)) continue;
+    const double curve = 2 * (end + start - 2 * middle), slope = end - start - curve;
+    for (int look = 1; look <= kLooks; ++look) {
+      const double at = static_cast<double>(look) / kLooks;
+      if (at >= first) break;
+      const double there = start + at * (slope + at * curve);
+      if (there <= 0) continue;
+      const double before = start + (at - 1.0 / kLooks) * (slope + (at - 1.0 / kLooks) * curve);
+      first = at - there / (there - before) / kLooks;
+      break;
+    }
+  }
+  return first > 1 - kLastPart ? h_ : h_ * std::max(first, kLeastPart);
+}
+
+void JointPart::BringToRest(VectorXd* speed) const {
+  for (Index column = 0; column < reduction_.cols(); ++column) {
+    if (rest_at_s_[static_cast<std::size_t>(column)] > h_ + 2 * kInstantS) continue;
+    for (Index row = 0; row < reduction_.rows(); ++row) {
+      if (reduction_(row, column) != 0) (*speed)[row] = 0;
+    }
+  }
+}
+
+}  // namespace tcs

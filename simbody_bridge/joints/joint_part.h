@@ -1,0 +1,94 @@
+// Joints that push each other, in a step of their own: springs, dampers and friction in closed form
+// (servo_motion.h). In the course of a step each joint that has friction slides one way, with a
+// constant force against it, or stands still and is held. A step ends where that changes.
+//
+// What else acts comes from an engine, which gives the mass matrix and the accelerations without
+// friction where it is asked to.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "simbody_bridge/joints/servo_motion.h"
+
+namespace tcs {
+
+class JointPart {
+ public:
+  // Of the speeds of these places among all. They are `reduction` times those of joints that mimic
+  // no other; `keeps_mimics` says that the engine's accelerations are, too. `friction` is of each
+  // speed.
+  JointPart(std::vector<std::size_t> places, Eigen::MatrixXd reduction, Eigen::VectorXd friction,
+            bool keeps_mimics);
+
+  const std::vector<std::size_t>& places() const { return places_; }
+  std::size_t size() const { return places_.size(); }
+  bool has_friction() const { return has_friction_; }
+  // Whether a step needs the masses of its middle and its end, too.
+  bool needs_masses() const { return needs_masses_; }
+
+  // Of all speeds, those of this part; and back.
+  Eigen::VectorXd Gather(const double* all) const;
+  void Scatter(const Eigen::VectorXd& own, double* all) const;
+
+  // What a step begins with, of each speed of the part. The rates are without friction, but with
+  // dampers and springs, which fall with each speed and each coordinate so much.
+  struct Start {
+    Eigen::MatrixXd mass;
+    Eigen::VectorXd speed, rate, by_speed, by_coordinate;
+  };
+  void Begin(const Start& start);
+  // Tries a step of `h` seconds, in this order, as ServoMotion does.
+  const JointMotion& Middle(double h);
+  const JointMotion& End(const Eigen::MatrixXd& middle_mass, const Eigen::VectorXd& middle_rate);
+  const JointMotion& Arrive(const Eigen::MatrixXd& end_mass, const Eigen::VectorXd& end_rate);
+  // When the first joint comes to rest in the step that was tried, or one that is held breaks away;
+  // else its length.
+  double FirstEvent();
+  // Makes those rest that have come to rest at its end.
+  void BringToRest(Eigen::VectorXd* speed) const;
+
+  const ServoMotion& motion() const { return motion_; }
+  // With friction, and as those that mimic others have to, in this step.
+  Eigen::VectorXd Rate(const Eigen::MatrixXd& mass, const Eigen::VectorXd& rate) const;
+
+ private:
+  enum class Slip { kFree, kForwards, kBackwards, kHeld };
+  struct Reduced;
+
+  double SignOf(Eigen::Index column) const;
+  bool IsSliding(Eigen::Index column) const { return SignOf(column) != 0; }
+  Reduced Reduce(const Start& start) const;
+  void FindSlips(Reduced* reduced);
+  bool Arrest(const Start& start, Reduced* reduced, Start* arrested) const;
+  Eigen::VectorXd Sliding() const;
+  void Linearise(const Start& start);
+  Eigen::VectorXd Excess(const Eigen::MatrixXd& mass, const Eigen::VectorXd& rate,
+                         const Eigen::VectorXd& with_friction) const;
+  double SpeedAfter(Eigen::Index column, double seconds);
+  double Crossing(Eigen::Index column, double until_s);
+  double FirstBreakaway() const;
+
+  const std::vector<std::size_t> places_;
+  const Eigen::MatrixXd reduction_;
+  const Eigen::VectorXd friction_;
+  Eigen::VectorXd bounds_;             // of each column of the reduction
+  std::vector<Eigen::Index> leaders_;  // the speed that is a column's own
+  bool has_friction_ = false, needs_masses_ = false;
+
+  // Of the step that has begun.
+  ServoMotion motion_;
+  ServoPush push_;
+  std::vector<Slip> slips_;  // of each column
+  Eigen::MatrixXd moving_;   // the columns that are not held
+  Eigen::VectorXd sliding_;  // what friction gives along each speed that is not held
+  double h_ = 0;
+  // By how much more than is there each column that is held had to be held.
+  std::array<Eigen::VectorXd, 3> excess_;  // at the start, in the middle, at the end
+  std::vector<double> rest_at_s_;          // of each column
+  ResponseFinder finder_;
+};
+
+}  // namespace tcs
