@@ -1,6 +1,7 @@
 #include "simbody_bridge/simbody/tree/tree_engine.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 
 #include "simbody_bridge/forest_engine.h"
@@ -84,7 +85,16 @@ class TreeEngine : public ForestEngine<SteppedTree> {
 
   std::string SuspectOf(int island) override { return NameOfBody(island, At(island).worst_body()); }
 
+  // Simbody's own words name its source lines.
   void Take(IslandStep& step) override {
+    try {
+      TakeStep(step);
+    } catch (const SimTK::Exception::Base&) {
+      throw std::runtime_error("numbers become too large or too small for Simbody");
+    }
+  }
+
+  void TakeStep(IslandStep& step) {
     SteppedTree& tree = At(step.island);
     ModelLoads& loads = LoadsOn(step.island);
     const double free_s = tree.TimeToTouch(step.from);

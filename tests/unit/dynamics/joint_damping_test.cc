@@ -61,11 +61,11 @@ std::vector<IntegratorSpec> EnginesAndSteps() {
   return engines;
 }
 
-INSTANTIATE_TEST_SUITE_P(Engines, OwnDamping, testing::ValuesIn(EnginesAndSteps()),
-                         [](const auto& of) {
-                           return NameOfEngine(info) +
-                                  (info.param.fixed_step.ns() > 0 ? "Steps" : "");
-                         });
+std::string NameOfSteps(const testing::TestParamInfo<IntegratorSpec>& info) {
+  return NameOfEngine(info) + (info.param.fixed_step.ns() > 0 ? "Steps" : "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Engines, OwnDamping, testing::ValuesIn(EnginesAndSteps()), NameOfSteps);
 
 TEST_P(OwnDamping, LetsAJointRunOut) {
   constexpr double kDamping = 2, kSpeed = 3;
