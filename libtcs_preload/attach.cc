@@ -201,6 +201,7 @@ void Attach(GuestThread& thread) {
   thread.slot = g_slots + received.reply.slot;
   thread.index = received.reply.slot;
   AllowPreemption();
+  thread.slot->spin.can_be_asked = OwnSignals() != 0 ? 1 : 0;
   if (is_first && g_header->has_porters != 0) MakePorter();
   AwaitFirstDispatch(thread);
 }

@@ -10,14 +10,15 @@
 namespace tcs::shm {
 
 struct SpinStreak {
-  static constexpr std::uint16_t kSpins = 8;  // it spins that has paused so often in a row
+  static constexpr std::uint8_t kSpins = 8;  // it spins that has paused so often in a row
 
-  std::int64_t begun_ns;     // with its first pause,
-  std::int64_t last_ns;      // and its last one so far
-  std::int64_t shown_ns;     // what its clock had shown by then
-  std::uint32_t site;        // the lower half of the address of the code that pauses
-  std::uint16_t pauses;      // in a row
-  std::uint8_t reads_clock;  // 1: it has read its clock in between
+  std::int64_t begun_ns;      // with its first pause,
+  std::int64_t last_ns;       // and its last one so far
+  std::int64_t shown_ns;      // what its clock had shown by then
+  std::uint32_t site;         // the lower half of the address of the code that pauses
+  std::uint8_t pauses;        // in a row
+  std::uint8_t can_be_asked;  // 1: whether it spins; the signal for that has its handler
+  std::uint8_t reads_clock;   // 1: it has read its clock in between
   // 1: when it was asked last, it was in a loop without pauses that does nothing but look.
   std::uint8_t in_loop;
 };
@@ -50,7 +51,7 @@ inline void GoOnSpinning(SpinStreak& streak, std::int64_t now_ns, std::int64_t s
 
 // Whether a thread spins that has stopped then; or, with `least` pauses, may have begun to.
 inline bool IsSpinning(const SpinStreak& streak, std::int64_t now_ns, std::int64_t gap_ns,
-                       std::uint16_t least = SpinStreak::kSpins) {
+                       std::uint8_t least = SpinStreak::kSpins) {
   return streak.pauses >= least && now_ns - streak.last_ns <= gap_ns;
 }
 

@@ -50,10 +50,11 @@ bool SpinWaits::AsksThreads(const RunState& run) {
 }
 
 bool SpinWaits::IsToBeAsked(Task& task) const {
-  if (task.used_up == 0 || task.parked || task.is_brief || !task.can_be_stopped || task.executes ||
-      run_.IsFixed() || run_.IsCallback() || task.process->robot->cpus.size() == 1 ||
-      task.process->robot->is_ideal || SlotOf(task).open_calls.load() != 0 ||
-      task.reached < task.asked_at + kAskEvery || LeastThatActs(task).IsNever()) {
+  if (task.used_up == 0 || task.parked || task.is_brief || task.executes ||
+      SlotOf(task).spin.can_be_asked == 0 || run_.IsFixed() || run_.IsCallback() ||
+      task.process->robot->cpus.size() == 1 || task.process->robot->is_ideal ||
+      SlotOf(task).open_calls.load() != 0 || task.reached < task.asked_at + kAskEvery ||
+      LeastThatActs(task).IsNever()) {
     return false;
   }
   task.asked_at = task.reached;
@@ -74,8 +75,8 @@ bool SpinWaits::TurnEnds(Task& task, VirtualTime start) const {
   const bool stopped = !run_.turn.HasSpoken() ||
                        (run_.turn.notified && slot.note.kind == shm::NotificationKind::kHorizon);
   const std::int64_t gap_ns = slot.spin_gap_ns + (run_.turn.HasSpoken() ? 0 : kStopNs);
-  const bool is_streak =
-      shm::IsSpinning(slot.spin, OwnNow(task).ns(), gap_ns, stopped ? 1 : shm::SpinStreak::kSpins);
+  const bool is_streak = shm::IsSpinning(slot.spin, OwnNow(task).ns(), gap_ns,
+                                         stopped ? std::uint8_t{1} : shm::SpinStreak::kSpins);
   const bool spins = slot.spin_gap_ns != 0 && (yields || is_streak);
   const auto act = [&] {
     ++robot.acts;

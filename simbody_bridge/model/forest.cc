@@ -10,6 +10,7 @@ int Shifted(int index, std::size_t by) { return index < 0 ? index : index + stat
 // `first_link` is the number of the model's first link among those of all models.
 void Plant(const RobotModel& model, int index, int first_link, Forest* forest) {
   RigidTree tree = MakeTree(model);
+  MakePossible(&tree);
   const std::size_t bodies = forest->bodies.size(), joints = forest->joints.size();
   for (TreeBody& body : tree.bodies) {
     body.parent = Shifted(body.parent, bodies);

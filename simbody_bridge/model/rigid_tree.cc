@@ -65,9 +65,7 @@ void AddMass(const Inertial& inertial, const Pose& pose, TreeBody* body) {
   body->center_m = common;
 }
 
-// Flat bodies, and sums of what CAD has rounded, are just beyond what a body can have, or what an
-// engine takes for that (MuJoCo no moment below 1e-15 kg m^2): the same is added to all three
-// moments.
+// The same is added to all three moments.
 void MakePossible(Matrix3* inertia) {
   constexpr double kLeast = 1e-15, kSlack = 1e-9;
   Inertial inertial;
@@ -179,8 +177,11 @@ RigidTree MakeTree(const RobotModel& model) {
     if (link.body == kWorldBody || !model.links[i].inertial.has_value()) continue;
     AddMass(*model.links[i].inertial, link.pose, &tree.bodies[static_cast<std::size_t>(link.body)]);
   }
-  for (TreeBody& body : tree.bodies) MakePossible(&body.inertia_kgm2);
   return tree;
+}
+
+void MakePossible(RigidTree* tree) {
+  for (TreeBody& body : tree->bodies) MakePossible(&body.inertia_kgm2);
 }
 
 }  // namespace tcs

@@ -49,6 +49,10 @@ struct StaticShape {
 // `model` has passed CheckModel.
 RigidTree MakeTree(const RobotModel& model);
 
+// For engines: flat bodies, and sums of what CAD has rounded, are just beyond what a body can have,
+// or what an engine takes for that (MuJoCo no moment below 1e-15 kg m^2).
+void MakePossible(RigidTree* tree);
+
 // The shortest way from the z axis to `axis`, of unit length.
 std::array<double, 4> FromZTo(const std::array<double, 3>& axis);
 
