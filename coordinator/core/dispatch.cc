@@ -229,7 +229,8 @@ void Engine::Settle(Task& task) {
       .reached = on_robot(reading.time_ns),
       .shown = on_robot(shm::ShownTime(page, reading)),
       .is_preempted = run_.turn.timed_out && (!run_.turn.notified || run_.turn.is_sent_to_gate),
-      .credit = -task.debt};
+      .credit = -task.debt,
+      .in_steps = task.metered.is_watched};
   if (run_.turn.notified && slot.note.kind != shm::NotificationKind::kYield) {
     run.noted = on_robot(slot.note.time_ns);
     run.shown = std::max(on_robot(page.last_shown_ns.load()), *run.noted);

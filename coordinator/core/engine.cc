@@ -58,7 +58,7 @@ VirtualTime Engine::HorizonFor(const Task& task, VirtualTime* idle_until) {
   const Robot& robot = *cpu.robot;
   *idle_until = {};
   const VirtualTime seen_by_spinners = spins_.LimitOf(task);
-  const_cast<Task&>(task).metered.is_watched = !seen_by_spinners.IsNever();
+  const_cast<Task&>(task).metered.is_watched = !seen_by_spinners.IsNever() && !run_.gates_only;
   if (run_.IsCallback()) {
     return std::min({FurthestOf(cpu.progress),
                      robot.scheduler.HorizonWhileWorldStands(cpu.core, task.order),

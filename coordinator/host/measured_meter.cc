@@ -56,8 +56,9 @@ Meter::Found MeasuredMeter::Look(MeteredThread& thread, std::uint64_t tsc, Progr
                  static_cast<double>(tsc - thread.asked_tsc) / rate_.ticks_per_ns);
   CheckIfDue(thread, tsc, clock);
   const ProgramTime now = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
-  return IsAtHorizon(now, OwnTime(thread.page->base_time_ns), horizon) ? Found::kAtHorizon
-                                                                       : Found::kGoesOn;
+  return IsAtHorizon(now, OwnTime(thread.page->base_time_ns), horizon, thread.is_watched)
+             ? Found::kAtHorizon
+             : Found::kGoesOn;
 }
 
 // Had the timer come in time, a look at the TSC is all there is to do.

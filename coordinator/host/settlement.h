@@ -15,7 +15,9 @@
 namespace tcs {
 
 // A thread stopped this close before its horizon has reached it: the rest is credit. Of a short
-// turn it is a part, so that the thread does run.
+// turn of one that others look at in short steps it is a part, so that the thread does run. Not
+// where the coordinator shares its processor: it would look again and again, and keep the thread
+// from it.
 inline constexpr VirtualDuration kCredit = VirtualDuration::Microseconds(20);
 inline constexpr std::int64_t kCreditsInTurn = 4;
 // So much a thread computes before its CPU clock is asked what of it was stolen.
@@ -33,6 +35,7 @@ struct StoppedRun {
   std::optional<VirtualTime> noted;
   bool is_preempted = false;  // by the timer, rather than by what it asked for
   VirtualDuration credit;     // that it had at its dispatch
+  bool in_steps = false;      // others look at what it does in short steps
 };
 
 struct Settlement {
@@ -41,9 +44,10 @@ struct Settlement {
   VirtualDuration ours;  // counted, but neither time nor charge of the thread's
 };
 
-// Of a turn from `start` to `horizon`, times on one clock.
+// Of a turn from `start` to `horizon`, times on one clock. `in_steps`: others look in short steps.
 template <class Time>
-constexpr bool IsAtHorizon(Time now, Time start, Time horizon) {
+constexpr bool IsAtHorizon(Time now, Time start, Time horizon, bool in_steps) {
+  if (!in_steps) return now >= horizon - kCredit;
   const VirtualDuration part = VirtualNs((horizon - start).ns() / kCreditsInTurn);
   return now >= horizon - std::clamp(part, VirtualDuration(), kCredit);
 }
@@ -59,7 +63,7 @@ constexpr Settlement SettleRun(const StoppedRun& run) {
   // What the clock has shown has happened, even where stolen time was found in it afterwards.
   result.progress =
       std::clamp(std::max(reached, run.shown), run.start, std::max(run.start, run.horizon));
-  if (run.is_preempted && IsAtHorizon(result.progress, run.start, run.horizon)) {
+  if (run.is_preempted && IsAtHorizon(result.progress, run.start, run.horizon, run.in_steps)) {
     result.progress = std::max(result.progress, run.horizon);
   }
   result.debt = reached - result.progress;

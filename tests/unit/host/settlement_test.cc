@@ -122,14 +122,14 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Case>& one) { return one.param.name; });
 
 TEST(IsAtHorizon, IsSoAShortTimeBefore) {
-  EXPECT_FALSE(IsAtHorizon(At(kMs - kCredit - kNs), At({}), At(kMs)));
-  EXPECT_TRUE(IsAtHorizon(At(kMs - kCredit), At({}), At(kMs)));
-  EXPECT_TRUE(IsAtHorizon(At(2 * kMs), At({}), At(kMs)));
+  EXPECT_FALSE(IsAtHorizon(At(kMs - kCredit - kNs), At({}), At(kMs), false));
+  EXPECT_TRUE(IsAtHorizon(At(kMs - kCredit), At({}), At(kMs), false));
+  EXPECT_TRUE(IsAtHorizon(At(2 * kMs), At({}), At(kMs), false));
 }
 
 TEST(IsAtHorizon, IsSoAfterMostOfAShortTurn) {
-  EXPECT_FALSE(IsAtHorizon(At(kMs - kCredit / 4 - kNs), At(kMs - kCredit), At(kMs)));
-  EXPECT_TRUE(IsAtHorizon(At(kMs - kCredit / 4), At(kMs - kCredit), At(kMs)));
+  EXPECT_FALSE(IsAtHorizon(At(kMs - kCredit / 4 - kNs), At(kMs - kCredit), At(kMs), true));
+  EXPECT_TRUE(IsAtHorizon(At(kMs - kCredit / 4), At(kMs - kCredit), At(kMs), true));
 }
 
 }  // namespace
