@@ -15,12 +15,14 @@ between() { # LEAST MOST VALUE WHAT
   awk -v least="$1" -v most="$2" -v value="$3" 'BEGIN { exit !(least <= value && value <= most) }' ||
     fail "$4: $3 instead of $1 to $2 us"
 }
-# A region takes at least what its threads compute. Each barrier costs natively some microseconds.
+# A region takes at least what its threads compute; 2,000 us where cores come apart by the drift bound. What a switch costs
+# is the host's, so exact bounds are for set costs.
 for cores in 2 4; do
   for options in "--host-cpus 1" "" "--accounting fixed"; do
     for policy in "" active passive; do
       us=$(OMP_WAIT_POLICY="$policy" run $cores "$build/bin/parallel_regions" $cores 200)
-      between 200 260 "$us" "OpenMP on $cores cores $options $policy"
+      [[ $options == *fixed* ]] && most=240 || most=600
+      between 200 $most "$us" "OpenMP on $cores cores $options $policy"
     done
   done
 done
@@ -30,11 +32,11 @@ hand_over() { # HOW US LEAST MOST
   for options in "--host-cpus 1" ""; do
     read -r us cpu < <(run 2 "$build/bin/spinning_hand_over" "$1" "$2")
     between "$3" "$4" "$us" "$1 $options"
-    between 1.5 2.2 "$cpu" "$1 $options: charged"
+    between 1.2 2.5 "$cpu" "$1 $options: charged"
   done
 }
-for how in pause yield clock; do hand_over $how 200 150 300; done
-hand_over bare 200 200 350
+for how in pause yield clock; do hand_over $how 200 150 500; done
+hand_over bare 200 200 600
 options="--accounting fixed"
 for how in pause yield clock; do
   run 2 "$build/bin/spinning_hand_over" $how 200 >"$out/first"
