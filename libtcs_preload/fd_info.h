@@ -71,4 +71,26 @@ inline bool FindNumber(const char* line, const char* name, int base, std::uint64
   }
 }
 
+// A member of an epoll set.
+struct EpollMember {
+  int fd;
+  std::uint32_t events;
+  std::uint64_t data;
+};
+
+// The next one that `info` tells of; false: there is none.
+inline bool NextMember(FdInfo& info, EpollMember* member) {
+  while (const char* line = info.Next()) {
+    std::uint64_t fd, events;
+    if (!FindNumber(line, "tfd:", 10, &fd) || !FindNumber(line, "events:", 16, &events) ||
+        !FindNumber(line, "data:", 16, &member->data)) {
+      continue;
+    }
+    member->fd = static_cast<int>(fd);
+    member->events = static_cast<std::uint32_t>(events);
+    return true;
+  }
+  return false;
+}
+
 }  // namespace tcs::preload

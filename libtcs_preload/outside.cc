@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 
 #include "libtcs_preload/exchange.h"
-#include "libtcs_preload/fd_info.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -95,13 +94,9 @@ HiddenMembers::HiddenMembers(GuestThread& thread, int epoll_fd) : epoll_fd_(epol
 
 void HiddenMembers::Read(GuestThread& thread) {
   FdInfo info(epoll_fd_);
-  while (const char* line = count_ < kMost ? info.Next() : nullptr) {
-    std::uint64_t fd = 0, events = 0, data = 0;
-    const bool is_member = FindNumber(line, "tfd:", 10, &fd) &&
-                           FindNumber(line, "events:", 16, &events) &&
-                           FindNumber(line, "data:", 16, &data);
-    if (!is_member || !IsHidden(thread, OutsideOf(static_cast<int>(fd)))) continue;
-    members_[count_++] = {static_cast<int>(fd), static_cast<std::uint32_t>(events), data};
+  EpollMember member;
+  while (count_ < kMost && NextMember(info, &member)) {
+    if (IsHidden(thread, OutsideOf(member.fd))) members_[count_++] = member;
   }
 }
 
@@ -109,7 +104,7 @@ void HiddenMembers::Read(GuestThread& thread) {
 long HiddenMembers::TakeOut(epoll_event* events, long found) const {
   long left = 0;
   for (long i = 0; i < found; ++i) {
-    const Member* hidden = nullptr;
+    const EpollMember* hidden = nullptr;
     for (int k = 0; k < count_; ++k) {
       if (members_[k].data == events[i].data.u64) hidden = &members_[k];
     }

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 
+#include "libtcs_preload/fd_info.h"
 #include "libtcs_preload/guest.h"
 #include "shm/outside_files.h"
 
@@ -49,16 +50,11 @@ class HiddenMembers {
 
  private:
   static constexpr int kMost = 8;
-  struct Member {
-    int fd;
-    std::uint32_t events;
-    std::uint64_t data;
-  };
   void Read(GuestThread& thread);
 
   const int epoll_fd_;
   int count_ = 0;
-  Member members_[kMost];
+  EpollMember members_[kMost];
 };
 
 // A GPU, an accelerator, a camera: they compute and see by themselves. `path` has just been opened.

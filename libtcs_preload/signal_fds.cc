@@ -42,19 +42,15 @@ unsigned long SignalsOf(int fd, bool* is_epoll) {
 
 void RearmSignalFds(int epfd) {
   FdInfo set(epfd);
-  while (const char* line = set.Next()) {
-    std::uint64_t fd, events, data;
-    if (!FindNumber(line, "tfd:", 10, &fd) || !FindNumber(line, "events:", 16, &events) ||
-        !FindNumber(line, "data:", 16, &data)) {
-      continue;
-    }
+  EpollMember member;
+  while (NextMember(set, &member)) {
     bool is_epoll = false;
-    if (SignalsOf(static_cast<int>(fd), &is_epoll) == 0) continue;
-    if (is_epoll) RearmSignalFds(static_cast<int>(fd));
+    if (SignalsOf(member.fd, &is_epoll) == 0) continue;
+    if (is_epoll) RearmSignalFds(member.fd);
     epoll_event event{};
-    event.events = static_cast<std::uint32_t>(events);
-    event.data.u64 = data;
-    RawSyscall(SYS_epoll_ctl, epfd, EPOLL_CTL_MOD, static_cast<long>(fd), Arg(&event));
+    event.events = member.events;
+    event.data.u64 = member.data;
+    RawSyscall(SYS_epoll_ctl, epfd, EPOLL_CTL_MOD, member.fd, Arg(&event));
   }
 }
 

@@ -69,7 +69,7 @@ enum class NotificationKind : std::uint32_t {
   kTimerGet = 9,  // args[0]: timer id; reply[0]: next expiry or 0, reply[1]: interval
   kTimerDelete = 10,  // args[0]: timer id
   kSpawned = 11,      // args[0]: pid of a new child that will attach (ThreadSlot::announces)
-  kYield = 12,        // let equals run
+  kYield = 12,        // let equals run; args[0]: 1 if the thread spins, as with kSpins
   kPriority = 13,     // args[0]: tid, 0 for the own; args[1]: POSIX policy, args[2]: priority, for
                       // the virtual scheduler; reply[0]: 0, or negative for an errno.
   // Policies may have SCHED_RESET_ON_FORK in them, or be kKeepPolicy. args[3]: 1
@@ -120,8 +120,7 @@ enum class NotificationKind : std::uint32_t {
                        // first, args[2]: WhereReads
   kChildUsage = 38,    // args[0]: pid of a child that has ended; reply[0]: what it and its own
                        // children were charged, ns; -1: not known
-  kSpins = 41,    // the thread looks at memory again and again; args[0]: 1 if at its clock, too. A
-                  // kYield has as args[1] whether it spins so, and as args[0] that it spins
+  kSpins = 41,         // the thread looks at memory again and again (ThreadSlot::spin)
   kOutside = 40,  // of a file by which the program may meet what is outside of the run; args: an
                   // OutsideEvent, and what it says (outside_files.h)
 };

@@ -53,12 +53,12 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
 Engine::~Engine() = default;
 
 // `idle_until`: the thread may sleep that far without asking, for nothing else happens here before.
-VirtualTime Engine::HorizonFor(const Task& task, VirtualTime* idle_until) {
+VirtualTime Engine::HorizonFor(Task& task, VirtualTime* idle_until) {
   const VirtualCpu& cpu = *task.cpu;
   const Robot& robot = *cpu.robot;
   *idle_until = {};
   const VirtualTime seen_by_spinners = spins_.LimitOf(task);
-  const_cast<Task&>(task).metered.is_watched = !seen_by_spinners.IsNever() && !run_.gates_only;
+  task.metered.is_watched = !seen_by_spinners.IsNever() && !run_.gates_only;
   if (run_.IsCallback()) {
     return std::min({FurthestOf(cpu.progress),
                      robot.scheduler.HorizonWhileWorldStands(cpu.core, task.order),

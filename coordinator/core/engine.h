@@ -132,7 +132,7 @@ class Engine {
   void ShowNetwork(VirtualTime progress);
   VirtualTime KeepWorldNear(const Task& task, VirtualTime horizon);
   bool HasJumpedOver();
-  VirtualTime HorizonFor(const Task& task, VirtualTime* idle_until);
+  VirtualTime HorizonFor(Task& task, VirtualTime* idle_until);
   void PollUnseen();
   bool UnmanagedRun() const;
   void WaitOutside();

@@ -43,12 +43,12 @@ class World {
   [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends,
                                  const MakeAt& make_at, DatagramWatch* watch = nullptr,
                                  bool is_recorded = false);
-  // Other processors that a run with its turns on `home` may use, of which other runs have none; to
-  // be asked before this process is bound to one.
   // See Dynamics.
   void InterruptBy(const std::function<bool()>& asked) {
     if (present()) dynamics_->InterruptBy(asked);
   }
+  // Other processors that a run with its turns on `home` may use, of which other runs have none; to
+  // be asked before this process is bound to one.
   static std::vector<int> ProcessorsBeside(int home, int host_cpus);
   // The dynamics do (Dynamics::UseProcessors).
   void UseProcessors(const std::vector<int>& cpus);

@@ -239,7 +239,7 @@ void Registration::PlaceAtGate(Task& task, VirtualTime at, bool is_first) {
   if (is_first && task.tid == task.process->pid) task.process->draws.Seed(~slot.seed);
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.leads_counter = task.process->leads_counter ? 1 : 0;
-  slot.spin_gap_ns = SpinWaits(run_).GapFor(*task.process);
+  slot.spin_gap_ns = SpinWaits::GapFor(run_, *task.process);
   slot.spin = {};
   slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
   slot.signals.store(0);

@@ -31,10 +31,10 @@ void ForEachBeside(const RunState& run, const Task& task, const Found& found) {
 
 }  // namespace
 
-std::uint32_t SpinWaits::GapFor(const Process& process) const {
+std::uint32_t SpinWaits::GapFor(const RunState& run, const Process& process) {
   const Robot& robot = *process.robot;
-  if (run_.IsCallback() || robot.is_ideal) return 0;
-  if (run_.IsFixed()) {
+  if (run.IsCallback() || robot.is_ideal) return 0;
+  if (run.IsFixed()) {
     return static_cast<std::uint32_t>(kGapNs + process.call_cost.ns());
   }
   if (robot.cpus.size() == 1) return 0;
@@ -166,7 +166,6 @@ bool SpinWaits::IsBeforeItsLook(Task& task) const {
 
 VirtualTime SpinWaits::LimitOf(const Task& task) const {
   VirtualTime limit = VirtualTime::Never();
-  if (task.process->robot->cpus.size() == 1) return limit;
   const bool is_close = task.process->stays_close_until > task.cpu->progress;
   ForEachBeside(run_, task, [&](const VirtualCpu& cpu, const Task& other) {
     if (is_close && other.process == task.process) {
@@ -183,7 +182,6 @@ VirtualTime SpinWaits::LimitOf(const Task& task) const {
 }
 
 VirtualTime SpinWaits::EndOfSpin(const Task& task) const {
-  if (task.process->robot->cpus.size() == 1) return VirtualTime::Never();
   const VirtualTime least = LeastThatActs(task);
   if (least.IsNever()) return least;
   const VirtualTime start = task.cpu->progress;

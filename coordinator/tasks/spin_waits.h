@@ -34,7 +34,7 @@ class SpinWaits {
 
   // What a thread of the process computes between two looks at most, by its clock, in ns; 0: nobody
   // is to know whether it spins.
-  std::uint32_t GapFor(const Process& process) const;
+  static std::uint32_t GapFor(const RunState& run, const Process& process);
 
   // Threads of that run are asked whether they spin.
   static bool AsksThreads(const RunState& run);

@@ -20,12 +20,14 @@
   "testq %rax, %rax\n\tjnz 1f\n\t"  \
   "call tcs_counter_with_vectors\n" \
   "1:\n\t"
-#define TCS_RESTORE                                                              \
-  "movq %rbp, %rsp\n\t"                                                          \
-  "movq %rax, %rdx\n\tshrq $32, %rdx\n\tmovl %eax, %esi\n\t"                     \
-  "popq %rax\n\taddb $0x7f, %al\n\tsahf\n\tmovl %esi, %eax\n\t"                  \
+#define TCS_GIVE_FLAGS "popq %rax\n\taddb $0x7f, %al\n\tsahf\n\t"
+#define TCS_GIVE_REGISTERS                                                       \
   "popq %rbp\n\tpopq %r11\n\tpopq %r10\n\tpopq %r9\n\tpopq %r8\n\tpopq %rdi\n\t" \
-  "popq %rsi\n\tpopq %rcx\n\tret\n\t"
+  "popq %rsi\n\tpopq %rcx\n\t"
+#define TCS_RESTORE                                                         \
+  "movq %rbp, %rsp\n\t"                                                     \
+  "movq %rax, %rdx\n\tshrq $32, %rdx\n\tmovl %eax, %esi\n\t" TCS_GIVE_FLAGS \
+  "movl %esi, %eax\n\t" TCS_GIVE_REGISTERS "ret\n\t"
 
 #define TCS_VECTORS(move)                                                                  \
   move(0) move(1) move(2) move(3) move(4) move(5) move(6) move(7) move(8) move(9) move(10) \
@@ -60,9 +62,7 @@ __asm__(
     "movq 88(%rbp), %rdi\n\t"
     "call tcs_pause_in_turn\n\t" TCS_VECTORS(TCS_GIVE_VECTOR)
     "1:\n\tmovq %rbp, %rsp\n\t"
-    "popq %rax\n\taddb $0x7f, %al\n\tsahf\n\t"
-    "popq %rbp\n\tpopq %r11\n\tpopq %r10\n\tpopq %r9\n\tpopq %r8\n\tpopq %rdi\n\t"
-    "popq %rsi\n\tpopq %rcx\n\tpopq %rdx\n\tpopq %rax\n\tret\n\t"
+    TCS_GIVE_FLAGS TCS_GIVE_REGISTERS "popq %rdx\n\tpopq %rax\n\tret\n\t"
     ".size tcs_pause, .-tcs_pause\n\t"
 
     ".p2align 4\n\t"

@@ -33,9 +33,7 @@ void YieldCounted(GuestThread& thread, std::uintptr_t site) {
   shm::ThreadSlot& slot = *thread.slot;
   const bool spins = Spins(slot, site, TimeOf(slot) - slot.clock.call_cost_ns, ShownBy(slot),
                            kYieldGaps * slot.spin_gap_ns);
-  Exchange(thread,
-           Request{.kind = shm::NotificationKind::kYield,
-                   .args = {spins ? 1 : 0, static_cast<std::int64_t>(slot.spin.reads_clock)}});
+  Exchange(thread, Request{.kind = shm::NotificationKind::kYield, .args = {spins ? 1 : 0}});
   if (spins) return GoOn(slot);
   slot.spin.last_ns = TimeOf(slot);
   slot.spin.shown_ns = ShownBy(slot);
@@ -64,7 +62,6 @@ void tcs_pause_in_turn(std::uintptr_t site) {
   }
   const Entered entered;
   if (entered == nullptr) return;
-  Exchange(*entered, Request{.kind = tcs::shm::NotificationKind::kSpins,
-                             .args = {static_cast<std::int64_t>(slot.spin.reads_clock)}});
+  Exchange(*entered, Request{.kind = tcs::shm::NotificationKind::kSpins});
   GoOn(slot);
 }

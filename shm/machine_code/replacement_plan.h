@@ -57,7 +57,7 @@ class ReplacementPlan {
       const Code room = machine_code::RoomFor(padding, read, padding_until_);
       if (room == nullptr) continue;
       padding_until_ = room + kJumpSize;
-      taken_until_ = read + (IsPause(read, function.end) ? 2 : CounterReadSize(read, function.end));
+      taken_until_ = read + Sought{.counter = true, .pauses = true}.SizeAt(read, function.end);
       *replacement = {read, {read, taken_until_}, room};
       return NotReplaced::kNo;
     }

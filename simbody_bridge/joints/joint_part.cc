@@ -62,6 +62,11 @@ void JointPart::Scatter(const VectorXd& own, double* all) const {
   for (std::size_t i = 0; i < places_.size(); ++i) all[places_[i]] = own[static_cast<Index>(i)];
 }
 
+void JointPart::Scatter(const JointMotion& own, double* way, double* speed) const {
+  Scatter(own.way, way);
+  Scatter(own.speed, speed);
+}
+
 // Which way the joint slides; 0: it does not, or has no friction.
 double JointPart::SignOf(Index column) const {
   const Slip slip = slips_[static_cast<std::size_t>(column)];
@@ -314,11 +319,11 @@ double JointPart::FirstBreakaway() const {
   return first > 1 - kLastPart ? h_ : h_ * std::max(first, kLeastPart);
 }
 
-void JointPart::BringToRest(VectorXd* speed) const {
+void JointPart::BringToRest(double* all) const {
   for (Index column = 0; column < reduction_.cols(); ++column) {
     if (rest_at_s_[static_cast<std::size_t>(column)] > h_ + 2 * kInstantS) continue;
     for (Index row = 0; row < reduction_.rows(); ++row) {
-      if (reduction_(row, column) != 0) (*speed)[row] = 0;
+      if (reduction_(row, column) != 0) all[places_[static_cast<std::size_t>(row)]] = 0;
     }
   }
 }

@@ -15,6 +15,11 @@
 
 namespace tcs {
 
+// A step that still ends too late for what happens first is tried again no more often than this.
+inline constexpr int kMostEventTries = 8;
+// A step of a set length has no more pieces than this; what happens in the last one is passed over.
+inline constexpr int kMostStepPieces = 1000;
+
 class JointPart {
  public:
   // Of the speeds of these places among all. They are `reduction` times those of joints that mimic
@@ -32,6 +37,12 @@ class JointPart {
   // Of all speeds, those of this part; and back.
   Eigen::VectorXd Gather(const double* all) const;
   void Scatter(const Eigen::VectorXd& own, double* all) const;
+  void Scatter(const JointMotion& own, double* way, double* speed) const;
+  // Of the mass matrix of all speeds, its own; the second one only if a step needs that.
+  Eigen::MatrixXd MassIn(const Eigen::MatrixXd& all) const { return all(places_, places_); }
+  Eigen::MatrixXd NeededMassIn(const Eigen::MatrixXd& all) const {
+    return needs_masses_ ? MassIn(all) : Eigen::MatrixXd();
+  }
 
   // What a step begins with, of each speed of the part. The rates are without friction, but with
   // dampers and springs, which fall with each speed and each coordinate so much.
@@ -47,8 +58,8 @@ class JointPart {
   // When the first joint comes to rest in the step that was tried, or one that is held breaks away;
   // else its length.
   double FirstEvent();
-  // Makes those rest that have come to rest at its end.
-  void BringToRest(Eigen::VectorXd* speed) const;
+  // Makes those rest, of all speeds, that have come to rest at its end.
+  void BringToRest(double* all) const;
 
   const ServoMotion& motion() const { return motion_; }
   // With friction, and as those that mimic others have to, in this step.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "simbody_bridge/model/model_check.h"
+#include "simbody_bridge/model/principal_axes.h"
 #include "simbody_bridge/model/vectors.h"
 
 namespace tcs {
@@ -68,11 +68,7 @@ void AddMass(const Inertial& inertial, const Pose& pose, TreeBody* body) {
 // The same is added to all three moments.
 void MakePossible(Matrix3* inertia) {
   constexpr double kLeast = 1e-15, kSlack = 1e-9;
-  Inertial inertial;
-  inertial.ixx_kgm2 = (*inertia)[0][0], inertial.iyy_kgm2 = (*inertia)[1][1];
-  inertial.izz_kgm2 = (*inertia)[2][2], inertial.ixy_kgm2 = (*inertia)[0][1];
-  inertial.ixz_kgm2 = (*inertia)[0][2], inertial.iyz_kgm2 = (*inertia)[1][2];
-  const std::array<double, 3> moments = PrincipalMoments(inertial);
+  const std::array<double, 3> moments = PrincipalAxesOf(*inertia).moments;
   const double beyond = moments[2] - moments[0] - moments[1];
   double missing = std::max(0.0, kLeast * (1 + kSlack) - moments[0]);
   if (beyond > -kSlack / 2 * moments[2]) missing = std::max(missing, beyond + kSlack * moments[2]);

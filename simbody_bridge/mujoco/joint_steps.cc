@@ -14,9 +14,6 @@ using Eigen::VectorXd;
 
 // Closed forms with springs cost the cube of the speeds that push each other, in each step.
 constexpr std::size_t kMostSprungSpeeds = 12;
-// A step has no more pieces than this; what happens in the last one is passed over.
-constexpr int kMostPieces = 1000;
-constexpr int kMostTries = 8;
 constexpr double kLeastPieceS = 1e-9;
 
 }  // namespace
@@ -91,10 +88,6 @@ void MujocoJointSteps::FindMass(const mjModel& model, const mjData& data) {
   mj_fullM(&model, mass_.data(), data.qM);
 }
 
-MatrixXd MujocoJointSteps::MassOf(const JointPart& part) const {
-  return mass_(part.places(), part.places());
-}
-
 // From the start with `way_` and `speed_`.
 bool MujocoJointSteps::Go(const mjModel& model, mjData* data, const Find& find) {
   positions_ = start_;
@@ -107,20 +100,16 @@ bool MujocoJointSteps::Go(const mjModel& model, mjData* data, const Find& find) 
 
 bool MujocoJointSteps::Try(const mjModel& model, mjData* data, double h, const Find& find) {
   const auto spread = [this](const JointPart& part, const JointMotion& motion) {
-    part.Scatter(motion.way, way_.data());
-    part.Scatter(motion.speed, speed_.data());
-  };
-  const auto mass_of = [this](const JointPart& part) {
-    return part.needs_masses() ? MassOf(part) : MatrixXd();
+    part.Scatter(motion, way_.data(), speed_.data());
   };
   for (JointPart& part : parts_) spread(part, part.Middle(h));
   if (!Go(model, data, find)) return false;
   for (JointPart& part : parts_) {
-    spread(part, part.End(mass_of(part), part.Gather(data->qacc_smooth)));
+    spread(part, part.End(part.NeededMassIn(mass_), part.Gather(data->qacc_smooth)));
   }
   if (!Go(model, data, find)) return false;
   for (JointPart& part : parts_) {
-    spread(part, part.Arrive(mass_of(part), part.Gather(data->qacc_smooth)));
+    spread(part, part.Arrive(part.NeededMassIn(mass_), part.Gather(data->qacc_smooth)));
   }
   return true;
 }
@@ -138,7 +127,7 @@ bool MujocoJointSteps::Step(const mjModel& model, mjData* data, const Slopes& sl
     if (!Go(model, data, find)) return false;
     if (!need_masses_) FindMass(model, *data);
     for (JointPart& part : parts_) {
-      part.Begin({.mass = MassOf(part),
+      part.Begin({.mass = part.MassIn(mass_),
                   .speed = part.Gather(data->qvel),
                   .rate = part.Gather(data->qacc_smooth),
                   .by_speed = part.Gather(slopes.by_speed.data()),
@@ -146,7 +135,7 @@ bool MujocoJointSteps::Step(const mjModel& model, mjData* data, const Slopes& sl
     }
     double h = left_s;
     if (!Try(model, data, h, find)) return false;
-    for (int i = 0; i < kMostTries && piece < kMostPieces; ++i) {
+    for (int i = 0; i < kMostEventTries && piece < kMostStepPieces; ++i) {
       double event_s = h;
       for (JointPart& part : parts_) event_s = std::min(event_s, part.FirstEvent());
       event_s = std::max(event_s, kLeastPieceS);
@@ -154,11 +143,7 @@ bool MujocoJointSteps::Step(const mjModel& model, mjData* data, const Slopes& sl
       h = event_s;
       if (!Try(model, data, h, find)) return false;
     }
-    for (const JointPart& part : parts_) {
-      VectorXd speed = part.Gather(speed_.data());
-      part.BringToRest(&speed);
-      part.Scatter(speed, speed_.data());
-    }
+    for (const JointPart& part : parts_) part.BringToRest(speed_.data());
     mj_integratePos(&model, start_.data(), way_.data(), 1);
     FollowLeaders(speed_.data(), start_.data());
     left_s -= h;

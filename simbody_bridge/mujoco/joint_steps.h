@@ -41,7 +41,6 @@ class MujocoJointSteps {
   bool Try(const mjModel& model, mjData* data, double h, const Find& find);
   bool Go(const mjModel& model, mjData* data, const Find& find);
   void FollowLeaders(double* speeds, double* positions) const;
-  Eigen::MatrixXd MassOf(const JointPart& part) const;
   void FindMass(const mjModel& model, const mjData& data);
 
   struct Follower {

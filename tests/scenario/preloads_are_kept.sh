@@ -179,7 +179,9 @@ faketime=$(find /usr/lib /usr/local/lib -name libfaketimeMT.so.1 2>/dev/null | h
 dates() {  # MODE
   local says
   says=$(timeout 30 "$tcsim" exec --accounting "$1" -- env LD_PRELOAD="$faketime" FAKETIME='@2001-02-03 04:05:06' \
-    sh -c 'date +%F; sleep 86400; date +%F') || fail "$1, libfaketime: status $?"
+    sh -c 'echo $$ >"$0"; date +%F; sleep 86400; date +%F' "of_faketime.$1") || fail "$1, libfaketime: status $?"
+  # The library leaves them, also natively, where the shell that it was loaded into first ends.
+  rm -f "/dev/shm/faketime_shm_$(<"of_faketime.$1")" "/dev/shm/sem.faketime_sem_$(<"of_faketime.$1")"
   [[ $says == $'2001-02-03\n2001-02-0'[34] ]] || fail "$1, libfaketime: $says"
 }
 [[ -z $faketime ]] || in_each_mode dates

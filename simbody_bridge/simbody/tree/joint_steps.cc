@@ -15,10 +15,6 @@ using Eigen::VectorXd;
 // What closed forms with springs cost grows with the cube of the speeds that push each other:
 // beyond this short steps are cheaper. Dampers alone have no such limit.
 constexpr std::size_t kMostSpeeds = 16;
-// A step that still ends too late for what happens first is tried again no more often than this.
-constexpr int kMostTries = 8;
-// A step of a set length has no more pieces than this; what happens in the last one is passed over.
-constexpr int kMostPieces = 1000;
 
 bool IsSprung(const JointDrive& drive) { return drive.stiffness > 0; }
 bool Holds(const JointDrive& drive) { return IsSprung(drive) || drive.damping > 0; }
@@ -63,11 +59,11 @@ void JointSteps::TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep
 
 void JointSteps::TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
   piece_ = step;
-  for (int piece = 0; piece < kMostPieces; ++piece) {
+  for (int piece = 0; piece < kMostStepPieces; ++piece) {
     Begin(tree, loads, piece_);
     piece_.length_s = piece_.limit.seconds();
     Try(tree, loads, piece_, piece_.length_s);
-    if (piece + 1 < kMostPieces) EndAtEvent(tree, loads, piece_);
+    if (piece + 1 < kMostStepPieces) EndAtEvent(tree, loads, piece_);
     tree.Project(piece_.to);
     if (piece_.length_s == piece_.limit.seconds()) break;
     const auto length = VirtualDuration::Nanoseconds(std::llround(piece_.length_s * 1e9));
@@ -128,7 +124,7 @@ void JointSteps::Begin(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
   tree.EvaluateOrRecall(step.from, loads.At(step, 0), step.from_rate.data());
   tree.Linearise(step.from, loads.At(step, 0), &mass_, &by_speed_, &by_coordinate_);
   for (JointPart& part : parts_) {
-    JointPart::Start start{.mass = MassOf(part),
+    JointPart::Start start{.mass = part.MassIn(mass_),
                            .speed = part.Gather(&step.from[coordinates_]),
                            .rate = part.Gather(&step.from_rate[coordinates_]),
                            .by_speed = part.Gather(by_speed_.data()),
@@ -144,10 +140,6 @@ void JointSteps::FindMass(SimbodyTree& tree, std::span<const double> state) {
   if (needs_masses_) tree.FindMass(state, &mass_);
 }
 
-MatrixXd JointSteps::MassOf(const JointPart& part) const {
-  return mass_(part.places(), part.places());
-}
-
 // `way_` and `speed_` from the beginning on.
 void JointSteps::Place(const SimbodyTree& tree, const IslandStep& step, std::span<double> state) {
   tree.CoordinateRates(step.from, way_, turn_);
@@ -159,11 +151,7 @@ void JointSteps::Place(const SimbodyTree& tree, const IslandStep& step, std::spa
 // taken as by Kutta's method.
 void JointSteps::Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h) {
   const auto spread = [this](const JointPart& part, const JointMotion& motion) {
-    part.Scatter(motion.way, way_.data());
-    part.Scatter(motion.speed, speed_.data());
-  };
-  const auto mass_of = [this](const JointPart& part) {
-    return part.needs_masses() ? MassOf(part) : MatrixXd();
+    part.Scatter(motion, way_.data(), speed_.data());
   };
   const auto find_turn = [&](const std::vector<double>& rate, std::vector<double>* turn) {
     tree.CoordinateRates(step.from, speed_, *turn);
@@ -176,7 +164,7 @@ void JointSteps::Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, dou
   find_turn(middle_rate_, &middle_turn_);
 
   for (JointPart& part : parts_) {
-    spread(part, part.End(mass_of(part), part.Gather(&middle_rate_[coordinates_])));
+    spread(part, part.End(part.NeededMassIn(mass_), part.Gather(&middle_rate_[coordinates_])));
   }
   Place(tree, step, state_);
   for (std::size_t i = 0; i < coordinates_; ++i) state_[i] += h * 2 * middle_turn_[i];
@@ -185,7 +173,7 @@ void JointSteps::Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, dou
   find_turn(end_rate_, &end_turn_);
 
   for (JointPart& part : parts_) {
-    spread(part, part.Arrive(mass_of(part), part.Gather(&end_rate_[coordinates_])));
+    spread(part, part.Arrive(part.NeededMassIn(mass_), part.Gather(&end_rate_[coordinates_])));
   }
   Place(tree, step, step.to);
   for (std::size_t i = 0; i < coordinates_; ++i) {
@@ -198,7 +186,7 @@ void JointSteps::EndAtEvent(SimbodyTree& tree, ModelLoads& loads, IslandStep& st
   const auto has_friction = [](const JointPart& part) { return part.has_friction(); };
   if (std::none_of(parts_.begin(), parts_.end(), has_friction)) return;
   if (!std::isfinite(step.to.back())) return;
-  for (int i = 0; i < kMostTries; ++i) {
+  for (int i = 0; i < kMostEventTries; ++i) {
     double event_s = step.length_s;
     for (JointPart& part : parts_) event_s = std::min(event_s, part.FirstEvent());
     event_s = WholeNanoseconds(std::max(event_s, kShortestStepS));
@@ -206,17 +194,12 @@ void JointSteps::EndAtEvent(SimbodyTree& tree, ModelLoads& loads, IslandStep& st
     step.length_s = event_s;
     Try(tree, loads, step, event_s);
   }
-  for (const JointPart& part : parts_) {
-    VectorXd speed = part.Gather(&step.to[coordinates_]);
-    part.BringToRest(&speed);
-    part.Scatter(speed, &step.to[coordinates_]);
-  }
+  for (const JointPart& part : parts_) part.BringToRest(&step.to[coordinates_]);
 }
 
 double JointSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, double h) {
   for (const JointPart& part : parts_) {
-    part.Scatter(part.motion().error().way, way_.data());
-    part.Scatter(part.motion().error().speed, &error_[coordinates_]);
+    part.Scatter(part.motion().error(), way_.data(), &error_[coordinates_]);
   }
   tree.CoordinateRates(step.from, way_, turn_);
   for (std::size_t i = 0; i < coordinates_; ++i) {
@@ -233,12 +216,11 @@ double JointSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doub
 void JointSteps::WriteCourse(SimbodyTree& tree, IslandStep& step) {
   FindMass(tree, step.to);
   for (const JointPart& part : parts_) {
-    const VectorXd end_rate = part.Rate(part.needs_masses() ? MassOf(part) : MatrixXd(),
-                                        part.Gather(&step.to_rate[coordinates_]));
+    const VectorXd end_rate =
+        part.Rate(part.NeededMassIn(mass_), part.Gather(&step.to_rate[coordinates_]));
     const ServoPush push = part.motion().PushUntil(end_rate);
     const JointMotion along = part.motion().Along(push);
-    part.Scatter(along.way, way_.data());
-    part.Scatter(along.speed, speed_.data());
+    part.Scatter(along, way_.data(), speed_.data());
     const ServoStart& start = part.motion().start();
     Append(start.speed, &step.course);
     Append(start.rate, &step.course);
@@ -295,8 +277,7 @@ void JointSteps::Within(const SimbodyTree& tree, const IslandStep& step, double 
     course = Take(course, &push_.f1);
     course = Take(course, &push_.f2);
     const JointMotion motion = MotionAfter(start_, push_, after_s, &finder_);
-    part.Scatter(motion.way, way_.data());
-    part.Scatter(motion.speed, speed_.data());
+    part.Scatter(motion, way_.data(), speed_.data());
   }
   Place(tree, step, *state);
   const double d = after_s / step.length_s;

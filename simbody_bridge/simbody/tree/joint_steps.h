@@ -41,7 +41,6 @@ class JointSteps : public ControlledSteps<JointSteps> {
   bool IsLarge(const JointPart& part) const;
   void Begin(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
   void FindMass(SimbodyTree& tree, std::span<const double> state);
-  Eigen::MatrixXd MassOf(const JointPart& part) const;
   void Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h);
   void EndAtEvent(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
   void Place(const SimbodyTree& tree, const IslandStep& step, std::span<double> state);
