@@ -15,6 +15,9 @@ namespace {
 constexpr std::int64_t kGapNs = 500;
 // It takes the host up to so long to stop a thread, of which it is charged some.
 constexpr std::int64_t kStopNs = 20'000;
+// On a busy host so long, unless its CPU clock was asked. One that has seen what it waited for has
+// not paused as often in its turn.
+constexpr std::int64_t kLateStopNs = 120'000;
 
 // Calls `found(cpu, task)` with what each other core of the thread's robot does next.
 template <class Found>
@@ -74,9 +77,13 @@ bool SpinWaits::TurnEnds(Task& task, VirtualTime start) const {
   const bool yields = run_.turn.notified && slot.note.kind == shm::NotificationKind::kYield;
   const bool stopped = !run_.turn.HasSpoken() ||
                        (run_.turn.notified && slot.note.kind == shm::NotificationKind::kHorizon);
-  const std::int64_t gap_ns = slot.spin_gap_ns + (run_.turn.HasSpoken() ? 0 : kStopNs);
-  const bool is_streak = shm::IsSpinning(slot.spin, OwnNow(task).ns(), gap_ns,
-                                         stopped ? std::uint8_t{1} : shm::SpinStreak::kSpins);
+  const auto paused_within = [&](std::int64_t gap_ns, std::uint8_t least) {
+    return shm::IsSpinning(slot.spin, OwnNow(task).ns(), slot.spin_gap_ns + gap_ns, least);
+  };
+  bool is_streak = paused_within(0, stopped ? std::uint8_t{1} : shm::SpinStreak::kSpins);
+  if (!run_.turn.HasSpoken()) {
+    is_streak = paused_within(kStopNs, 1) || paused_within(kLateStopNs, shm::SpinStreak::kSpins);
+  }
   const bool spins = slot.spin_gap_ns != 0 && (yields || is_streak);
   const auto act = [&] {
     ++robot.acts;
