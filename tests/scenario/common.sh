@@ -10,15 +10,18 @@ fi
 # The process that coordinates the run whose tcsim has this number: tcsim > its keeper > it.
 coordinator_of() { pgrep -P "$(pgrep -P "$1")"; }
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
-# What is left in /dev/shm by now and was not there when the test began. Others' files come and go: what is left is
-# still there a second later.
+# What is left in /dev/shm by now and was not there when the test began. Others' files come and go with their runs: what
+# is left stays.
 shared_at_start=$(ls /dev/shm)
 new_in_shm() {
-  local now
+  local now i
   now=$(comm -13 <(sort <<<"$shared_at_start") <(ls /dev/shm | sort))
-  [[ -n $now ]] || return 0
-  sleep 1
-  comm -12 <(printf "%s\n" "$now") <(ls /dev/shm | sort)
+  for ((i = 0; i < 20; ++i)); do
+    [[ -n $now ]] || return 0
+    sleep 1
+    now=$(comm -12 <(printf "%s\n" "$now") <(ls /dev/shm | sort))
+  done
+  printf "%s\n" "$now"
 }
 # The file of the first library of the loader's that matches; nothing where there is none. The whole list is read: who
 # stops reading ends `ldconfig` by SIGPIPE, and with it, under pipefail, the test.
