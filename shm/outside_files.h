@@ -49,8 +49,10 @@ inline std::uint64_t OutsideKeyOf(const struct stat& status) {
   if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)) {
     return kOutsideDevice | (status.st_rdev & kOutsideKeyMask);
   }
-  const std::uint64_t mixed = (status.st_dev * 0x9e3779b97f4a7c15) ^ status.st_ino;
-  return (mixed & kOutsideKeyMask) | 1;
+  // Files of one device differ: neighbours often have the next number.
+  const std::uint64_t mixed =
+      ((status.st_dev * 0x9e3779b97f4a7c15) ^ status.st_ino) & kOutsideKeyMask;
+  return mixed != 0 ? mixed : kOutsideKeyMask;
 }
 
 // Of the file; null: it is not among them.
