@@ -13,6 +13,7 @@ option(TCS_WERROR "Treat warnings as errors, as developers and CI do; compilers 
 # includes do not show then: `./dev build dev` compiles each source by itself.
 option(TCS_UNITY "Compile many sources of a library at a time" OFF)
 set(TCS_UNITY_BATCH 24)
+option(TCS_CHECK_ONLY "Sources are read, and nothing is made of them" OFF)
 
 include(TcsSanitizers)
 
@@ -33,6 +34,9 @@ function(tcs_target_defaults target)
   if(TCS_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
+  if(TCS_CHECK_ONLY)
+    target_compile_options(${target} PRIVATE -fsyntax-only)
+  endif()
   if(NOT ARG_NO_SANITIZE)
     tcs_target_sanitize(${target})
   endif()
@@ -50,6 +54,15 @@ endfunction()
 # The same of a whole library.
 function(tcs_target_compile_quickly target)
   target_compile_options(${target} PRIVATE -Og)
+endfunction()
+
+# For programs of many small sources with names of their own, which cannot be compiled as one. Not where each source is
+# to show what it forgets to include.
+function(tcs_read_headers_once target)
+  if(TCS_UNITY)
+    list(TRANSFORM ARGN REPLACE "(.+)" "$<$<COMPILE_LANGUAGE:CXX>:\\1>")
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
 endfunction()
 
 function(tcs_add_library target)
