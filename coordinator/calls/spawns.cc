@@ -40,6 +40,12 @@ void Spawns::Begin(Task& maker, const TrappedCall& call) {
   maker.in_vfork = maker.expects_kernel = made->WaitsForChild();
 }
 
+bool Spawns::HasMadeChild(Task& maker, Moment moment) {
+  LookForBirths(maker, moment);
+  return std::none_of(maker.births.begin(), maker.births.end(),
+                      [](const Birth& birth) { return birth.call.WaitsForChild(); });
+}
+
 bool Spawns::IsUnborn(pid_t tid, Moment moment) {
   const pid_t pid = ProcessOfThread(tid);
   const Process* process = run_.table.LivingProcess(pid);

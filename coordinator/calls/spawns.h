@@ -48,6 +48,9 @@ class Spawns {
   static void Begin(Task& maker, const TrappedCall& call);
   // The kernel may have made it by now. What the shim tells of may still be told.
   void LookForBirths(Task& maker, Moment moment) { TakeIn(maker, moment, false, false); }
+  // Of a thread that waits in the kernel, by vfork, for its child: the child is there. Before, the
+  // thread waits for something else, as for the lock of a file that it maps.
+  bool HasMadeChild(Task& maker, Moment moment);
   // The thread's turn is over; or it says something else than what it was to tell, and the kernel
   // is through with its call.
   void TurnEnds(Task& maker, Moment moment) { TakeIn(maker, moment, true, false); }

@@ -56,6 +56,7 @@ void TrappedCalls::Exit(Task& task, const TrappedCall& call) {
   // A thread that joins it looks at a word that the kernel clears. Were the kernel not through with
   // it, the coordinator would have to sleep for that, and threads would run whose turn it is not.
   executor_.LetKernelFinish(call.tid);
+  if (IsExiting(call.tid)) run_.exiting.push_back(call.tid);
 }
 
 void TrappedCalls::ReleaseAll() {

@@ -41,6 +41,15 @@ bool MakesThread(const Task& task) {
                      [](const Birth& birth) { return birth.call.MakesThread(); });
 }
 
+// For how long the coordinator sleeps before its next look at a thread that is to make one call. A
+// thread that does not come to it after some looks waits for others, which its looks keep from the
+// processor.
+HostDuration BriefSleep(const Task& task, int looks) {
+  constexpr int kEager = 8, kMostDoublings = 7;
+  const int doublings = std::clamp(looks - kEager, 0, kMostDoublings);
+  return (MakesThread(task) ? kBriefBirth : kBrief) * (std::int64_t{1} << doublings);
+}
+
 // What the thread may compute once it is back from the kernel.
 HostDuration AfterCall(const Task& task) { return MakesThread(task) ? HostDuration() : kBrief / 2; }
 
@@ -308,15 +317,14 @@ bool Engine::GivesUpStart(Task& task, int turns) {
 
 // Until the running thread has notified, reached its horizon, or must make room for another one.
 void Engine::AwaitStop(Task& task) {
-  int starting_turns = 0, brief_turns = 0;
+  int starting_turns = 0, brief_turns = 0, brief_looks = 0;
   StarvationWatch starvation(host_cpu_.stop_tsc(), clock_.rate().ticks_per_ns);
   for (bool first = true;; first = false) {
     // What it has made of its clock meanwhile must not be reckoned with.
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
     if (!first) host_cpu_.Continue(task);
     if (std::exchange(opens_gate_, false)) HostCpu::OpenGate(SlotOf(task));
-    const HostDuration brief = MakesThread(task) ? kBriefBirth : kBrief;
-    const HostDuration asked = task.is_brief ? brief : TimeToLook(task);
+    const HostDuration asked = task.is_brief ? BriefSleep(task, brief_looks++) : TimeToLook(task);
     if (PollWhileRunning(task, asked)) return;
     if (!run_.turn.timed_out) continue;
     run_.turn.timed_out = false;

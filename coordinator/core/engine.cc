@@ -304,8 +304,12 @@ bool Engine::HasJumpedOver() {
   return !found.wakes_others;
 }
 
-// Threads or processes that never registered are at work: time waits for them.
-bool Engine::UnmanagedRun() const { return unmanaged_.AnyRuns() || unknown_children_.AnyRuns(); }
+// Threads or processes that never registered are at work, or the kernel is at somebody's end: time
+// waits for them.
+bool Engine::UnmanagedRun() {
+  std::erase_if(run_.exiting, [](pid_t tid) { return !IsExiting(tid); });
+  return !run_.exiting.empty() || unmanaged_.AnyRuns() || unknown_children_.AnyRuns();
+}
 
 VirtualTime Engine::Furthest() const {
   VirtualTime furthest = world_.present() ? world_.progress() : VirtualTime();

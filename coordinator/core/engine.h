@@ -134,7 +134,7 @@ class Engine {
   bool HasJumpedOver();
   VirtualTime HorizonFor(Task& task, VirtualTime* idle_until);
   void PollUnseen();
-  bool UnmanagedRun() const;
+  bool UnmanagedRun();
   void WaitOutside();
   bool StepOutside();
   void ShowOutside();

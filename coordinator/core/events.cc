@@ -141,7 +141,8 @@ bool Engine::BlockedInKernel() {
   if (state == 'S' && CutsOff(task)) return task.process->expelled;
   if (state == 't' && debugger_.IsOf(*task.process)) return false;  // and everybody with it
   const bool stopped = state == 'T' || state == 't';                // until a signal, or its tracer
-  const bool in_vfork = state == 'D' && task.in_vfork;
+  const bool in_vfork =
+      state == 'D' && task.in_vfork && spawns_.HasMadeChild(task, {run_.WrittenAt()});
   if (!stopped && !in_vfork && (state != 'S' || task.slot < 0)) {
     if (state == 'D') {
       ahead_.BringHomeHolders(*task.process, run_.turn.held_looks > kLongHeldLooks);

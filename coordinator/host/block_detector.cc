@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "coordinator/host/bare_process.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -21,10 +22,12 @@ namespace {
 // who may never get the processor again before its death is known.
 [[noreturn]] void Detect(int arm, int fired) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (!SetLevel(0, Level::kDetector)) RunOnlyWhenIdle();
+  const bool only_when_idle = !SetLevel(0, Level::kDetector);
   constexpr int kArm = 0, kFired = 1;
   if (dup2(arm, kArm) == kArm && dup2(fired, kFired) == kFired) {
     close_range(2, ~0u, 0);
+    RelayInBareProcess(only_when_idle);
+    if (only_when_idle) RunOnlyWhenIdle();
     std::uint64_t count = 0;
     const std::uint64_t one = 1;
     while (read(kArm, &count, sizeof count) == sizeof count) {

@@ -38,6 +38,7 @@ struct MeteredThread {
   std::int64_t host_origin_ns = kNoOrigin;
   std::int64_t page_origin_ns = 0;  // what its page says of that
   std::int64_t known_cpu_ns = -1;   // what it said last (shared_cpu_meter.h)
+  HostDuration least_sleep;         // before it is looked at again (likewise)
   HostDuration longest_run = HostDuration::Milliseconds(10);  // of late
   // Others look at what it does in short steps: its CPU clock is asked after each turn.
   bool is_watched = false;

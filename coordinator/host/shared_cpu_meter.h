@@ -8,6 +8,9 @@
 //
 // A thread may have computed beyond its horizon, or after it was held, for as long as nothing
 // stopped it: the timer tells nothing of what was stolen.
+//
+// The coordinator's looks take time from the thread, on the same processor. Where others have most
+// of that, the thread is not at its horizon for long, and looks are further and further apart.
 #pragma once
 
 #include "coordinator/host/measured_meter.h"
@@ -20,6 +23,7 @@ class SharedCpuMeter final : public MeasuredMeter {
 
   std::uint64_t Begin(MeteredThread& thread, std::uint64_t tsc, bool from_gate,
                       bool is_silent) override;
+  HostDuration TimeToLook(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon) override;
   Found Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
              const CpuClock& clock) override;
   bool HasOverslept(std::uint64_t, std::uint64_t, HostDuration) const override { return false; }

@@ -54,6 +54,8 @@ std::uint64_t CalibrateTsc() {
 
 namespace {
 
+constexpr unsigned kExiting = 0x4;  // PF_EXITING
+
 bool uses_no_levels = false;
 
 }  // namespace
@@ -161,8 +163,12 @@ bool IsInUserMode(pid_t tid) {
 
 pid_t ParentOf(pid_t pid) { return ReadThreadStat(pid).parent; }
 
+bool IsExiting(pid_t tid) {
+  const ThreadStat stat = ReadThreadStat(tid);
+  return (stat.state == 'R' || stat.state == 'D') && (stat.flags & kExiting) != 0;
+}
+
 bool IsDying(pid_t tid) {
-  constexpr unsigned kExiting = 0x4;  // PF_EXITING
   const ThreadStat stat = ReadThreadStat(tid);
   if (stat.state == 'Z' || stat.state == 'X' || (stat.flags & kExiting) != 0) return true;
   return (ReadSignalSets(tid).own_pending >> (SIGKILL - 1) & 1) != 0;
@@ -324,10 +330,12 @@ int WhyNoDuplicates() {
   return copy ? 0 : errno;
 }
 
-int WhyNoLooksInto(pid_t fork) {
+// Whoever may not look is told so before the memory is looked for.
+int WhyNoLooksInto(pid_t pid) {
   static const char there = 1;
   char found;
-  return ReadMemory(fork, reinterpret_cast<std::uint64_t>(&there), &found, 1) ? 0 : errno;
+  const bool read = ReadMemory(pid, reinterpret_cast<std::uint64_t>(&there), &found, 1);
+  return read || errno == EFAULT ? 0 : errno;
 }
 
 std::vector<pid_t> ChildrenOf(pid_t pid) {

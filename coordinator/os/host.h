@@ -88,6 +88,8 @@ bool IsInUserMode(pid_t tid);
 // -1 if the process has ended.
 pid_t ParentOf(pid_t pid);
 
+// The kernel is at the thread's end, and not through with it.
+bool IsExiting(pid_t tid);
 // The thread is on its way out: it was killed, or ends with its process.
 bool IsDying(pid_t tid);
 
@@ -145,9 +147,9 @@ int DuplicateFd(int pidfd, int fd);
 // The errno by which the kernel refuses pidfd_getfd to this process, whoever is asked about, as a
 // container's seccomp profile does; 0 if it does not.
 int WhyNoDuplicates();
-// The errno by which the kernel keeps this process from what is in the memory of a fork of its; 0
+// The errno by which the kernel keeps this process from what is in the memory of a child of its; 0
 // if it does not.
-int WhyNoLooksInto(pid_t fork);
+int WhyNoLooksInto(pid_t pid);
 
 std::vector<pid_t> ChildrenOf(pid_t pid);
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <deque>
 #include <string>
+#include <vector>
 
 #include "coordinator/os/stop_request.h"
 #include "coordinator/policy/temporal_consistency.h"
@@ -45,6 +46,9 @@ struct RunState {
   VirtualTime latest;
   VirtualDuration most_lead;           // of all programs' clocks
   bool had_unmanaged_threads = false;  // some process, at some time
+  // Threads that have made their last call, and that the kernel was not through with when they were
+  // last looked at. What comes of their ends comes late to others then, and time waits for it.
+  std::vector<pid_t> exiting;
   StopRequest stop;
   VirtualTime grace_began = VirtualTime::Never();
 

@@ -64,6 +64,25 @@ TEST_F(SharedCpuMeterTest, OneThatHasDiedHasComputedNoMoreThanItsClockHasSaid) {
   EXPECT_EQ(ClockAt(end), kStart + 10 * kUs);
 }
 
+// Each look takes time from it, on the same processor.
+TEST_F(SharedCpuMeterTest, OneThatOthersKeepFromComputingIsLookedAtLessAndLess) {
+  const ProgramTime near = OwnTime(kStart + 30 * kUs);
+  std::uint64_t now = kBegun;
+  meter_.Check(thread_, now, clock_);
+  HostDuration asked = meter_.TimeToLook(thread_, now, near);
+  EXPECT_EQ(asked, HostNs(25 * kUs));  // less what timers are late
+  for (const std::int64_t us : {40, 80, 160, 320, 500, 500}) {
+    now += static_cast<std::uint64_t>(asked.ns() / kUs + 5) * kTicksPerUs;
+    EXPECT_EQ(meter_.Look(thread_, now, near, clock_), Meter::Found::kGoesOn);
+    asked = meter_.TimeToLook(thread_, now, near);
+    EXPECT_EQ(asked, HostNs(us * kUs));
+  }
+  host_cpu_ns_ += 490 * kUs;
+  now += 500 * kTicksPerUs;
+  EXPECT_EQ(meter_.Look(thread_, now, near, clock_), Meter::Found::kAtHorizon);
+  EXPECT_EQ(meter_.TimeToLook(thread_, now, near), HostNs(20 * kUs));
+}
+
 // It may have computed on.
 TEST_F(SharedCpuMeterTest, ALateTimerTellsOfNoTheft) {
   EXPECT_FALSE(meter_.HasOverslept(kBegun, kBegun + 1'000 * kTicksPerMs, HostNs(kMs)));

@@ -1,0 +1,16 @@
+// The block detector's loop, in a process that has no memory but two pages of its own.
+//
+// What runs only when nobody else wants the processor gets it about as rarely to die. To unmap a
+// library it takes the kernel's lock of that file, for which whoever starts or ends a program waits
+// meanwhile: with the C library that is everybody on the machine. So the process gives up what it
+// shares with others before it sinks to that level.
+#pragma once
+
+namespace tcs {
+
+// Reads 8 bytes from descriptor 0 and then writes 8 to descriptor 1, again and again; ends once
+// either fails. `only_when_idle`: at SCHED_IDLE. For a process that has been forked for this and
+// has one thread. Returns only if the memory cannot be had; nothing has changed then.
+void RelayInBareProcess(bool only_when_idle);
+
+}  // namespace tcs
