@@ -16,9 +16,9 @@ client_pid() { ps -o pid=,comm= --ppid "$(coordinator_pid)" | awk '$2 == "sh" {p
 for victim in tcsim_pid:KILL keeper_pid:KILL coordinator_pid:KILL client_pid:KILL tcsim_pid:TERM tcsim_pid:HUP; do
   "$tcsim" exec -- sh -c "$program" 2>/dev/null &
   tcsim_pid=$!
-  # Beside others it may take long until they are there, and one that is not would not be missed.
+  # The client and its child, both: tcsim's own processes have their words in their command lines, too.
   for _ in $(seq 600); do
-    (($(pgrep -fc "while :; do :; done # $mark") >= 4)) && break
+    (($(ps -eo comm=,args= | grep -c "^sh .*# $mark") >= 2)) && break
     sleep 0.1
   done
   kill "-${victim#*:}" "$(${victim%:*})"
