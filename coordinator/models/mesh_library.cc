@@ -16,6 +16,7 @@
 #include "coordinator/models/model_mistake.h"
 #include "coordinator/models/packed_mesh.h"
 #include "coordinator/models/urdf_xml.h"
+#include "simbody_bridge/model/convex_hull.h"
 
 namespace tcs {
 namespace {
@@ -111,13 +112,22 @@ std::shared_ptr<const Mesh> MeshLibrary::Take(const std::string& path, const Poi
   if (read == read_.end()) {
     bool is_flat = false;
     read = read_.emplace(path, Read(path, &is_flat)).first;
-    if (is_flat) flat_.insert(path);
+    if (is_flat) flat_files_.insert(path);
   }
-  if (read->second.vertices_m.empty()) return nullptr;
-  mesh = std::make_shared<const Mesh>(Scaled(read->second, scale));
+  Mesh scaled = Scaled(read->second, scale);
+  // By its scale, or but for rounding.
+  if (!scaled.vertices_m.empty() && !SpansVolume(scaled.vertices_m)) {
+    Hull plate = MeshHull(PlateOf(scaled.vertices_m), kMostVertices);
+    scaled = {path, std::move(plate.vertices), std::move(plate.triangles)};
+    flat_.insert({path, scale});
+  }
+  if (scaled.vertices_m.empty()) return nullptr;
+  mesh = std::make_shared<const Mesh>(std::move(scaled));
   return mesh;
 }
 
-bool MeshLibrary::IsFlat(const std::string& path) const { return flat_.contains(path); }
+bool MeshLibrary::IsFlat(const std::string& path, const Point& scale) const {
+  return flat_files_.contains(path) || flat_.contains({path, scale});
+}
 
 }  // namespace tcs

@@ -15,17 +15,20 @@ namespace tcs {
 class MeshLibrary {
  public:
   // The convex hull of the mesh in the file `path` (STL, OBJ, COLLADA, glTF), scaled along its axes
-  // by numbers other than 0. It has 512 vertices at most. A flat mesh is a thin plate; null: it is
-  // a line or a point. Throws ModelMistake, "PATH: …": what is no mesh, is larger than 64 MiB, or
+  // by these numbers. It has 512 vertices at most. What is flat is a thin plate; null: it is a line
+  // or a point. Throws ModelMistake, "PATH: …": what is no mesh, is larger than 64 MiB, or
   // takes too long to read.
   std::shared_ptr<const Mesh> Take(const std::string& path, const std::array<double, 3>& scale);
-  // Whether the mesh in that file, which has been taken, is flat.
-  bool IsFlat(const std::string& path) const;
+  // Whether the mesh in that file, which has been taken so scaled, is flat.
+  bool IsFlat(const std::string& path, const std::array<double, 3>& scale) const;
 
  private:
+  using Use = std::pair<std::string, std::array<double, 3>>;  // a file, and its scale
+
   std::map<std::string, Mesh> read_;  // hulls, before scaling
-  std::set<std::string> flat_;        // those of them that are plates
-  std::map<std::pair<std::string, std::array<double, 3>>, std::shared_ptr<const Mesh>> scaled_;
+  std::set<std::string> flat_files_;  // those of them that are plates
+  std::map<Use, std::shared_ptr<const Mesh>> scaled_;
+  std::set<Use> flat_;  // those that scaling has made plates, or that are but for rounding
 };
 
 }  // namespace tcs

@@ -89,7 +89,6 @@ std::optional<Geometry> MeshOf(const urdf::Mesh& mesh, const XMLElement& element
     notes->AddMistake(LineOf(element), fmt::format("{}: {}", OwnerOf(element), why));
     return std::nullopt;
   };
-  if (mesh.scale.x * mesh.scale.y * mesh.scale.z == 0) return mistake("the scale of a mesh is 0");
   try {
     const std::string path = surroundings.packages.Find(mesh.filename, surroundings.described_in);
     const auto taken = surroundings.meshes.Take(path, From(mesh.scale));
@@ -100,10 +99,11 @@ std::optional<Geometry> MeshOf(const urdf::Mesh& mesh, const XMLElement& element
                                  path, OwnerOf(element)));
       return std::nullopt;
     }
-    if (surroundings.meshes.IsFlat(path)) {
-      notes->AddMend("flat mesh", LineOf(element),
-                     fmt::format("the mesh {} in {} is flat, and is taken as a plate of 1 mm", path,
-                                 OwnerOf(element)));
+    if (surroundings.meshes.IsFlat(path, From(mesh.scale))) {
+      notes->AddMend(
+          "flat mesh", LineOf(element),
+          fmt::format("the mesh {} in {} is flat, and is taken as a plate of 1/200 of its extent",
+                      path, OwnerOf(element)));
     }
     return MeshShape{taken};
   } catch (const ModelMistake& mistaken) {

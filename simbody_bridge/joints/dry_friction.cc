@@ -1,7 +1,7 @@
 #include "simbody_bridge/joints/dry_friction.h"
 
 #include <Eigen/Cholesky>
-#include <vector>
+#include <utility>
 
 namespace tcs {
 namespace {
@@ -16,16 +16,18 @@ constexpr double kRounding = 1e-12;
 // only the first one does, which always ends (Murty).
 constexpr int kPatience = 5;
 
+// Which rows are held, by rounds.
 class Holds {
  public:
-  Holds(const MatrixXd& by_effort, const VectorXd& moves, const VectorXd& bounds, VectorXd* hold)
-      : by_effort_(by_effort), moves_(moves), bounds_(bounds), hold_(*hold) {
-    at_.assign(static_cast<std::size_t>(moves.size()), 0);
-    hold_.resize(moves.size());
+  Holds(const VectorXd& bounds, std::vector<int>* at, VectorXd* hold)
+      : bounds_(bounds), at_(*at), hold_(*hold) {
+    hold_.resize(bounds.size());
   }
+  Holds(const Holds&) = delete;
+  Holds& operator=(const Holds&) = delete;
 
   void Find() {
-    const Index size = moves_.size();
+    const Index size = bounds_.size();
     Index fewest = size + 1;
     int patience = kPatience;
     // No more than a guard: each round solves a system.
@@ -47,54 +49,140 @@ class Holds {
     }
   }
 
+ protected:
+  ~Holds() = default;
+
+  int At(Index row) const { return at_[static_cast<std::size_t>(row)]; }
+
+  // Those that are held come to rest: finds what holds them, and the speeds of the others.
+  virtual void Solve() = 0;
+  // The speed that the row's bound makes of it.
+  virtual double SpeedByBound(Index row) const = 0;
+
+  const VectorXd& bounds_;
+  std::vector<int>& at_;  // which bound: -1, 1; 0: it is held
+  VectorXd& hold_;
+  VectorXd w_;  // the speeds
+
  private:
-  int& At(Index row) { return at_[static_cast<std::size_t>(row)]; }
-
-  // Those within their bounds come to rest.
-  void Solve() {
-    free_.clear();
-    for (Index row = 0; row < moves_.size(); ++row) {
-      hold_[row] = At(row) * bounds_[row];
-      if (At(row) == 0) free_.push_back(row);
-    }
-    w_ = moves_ + by_effort_ * hold_;
-    if (free_.empty()) return;
-    const MatrixXd held = by_effort_(free_, free_);
-    const VectorXd efforts = held.llt().solve(VectorXd(-w_(free_)));
-    for (std::size_t i = 0; i < free_.size(); ++i) {
-      hold_[free_[i]] = efforts[static_cast<Index>(i)];
-    }
-    w_ = moves_ + by_effort_ * hold_;
-  }
-
   void FindWrong() {
     wrong_.clear();
-    for (Index row = 0; row < moves_.size(); ++row) {
+    for (Index row = 0; row < bounds_.size(); ++row) {
       const double bound = bounds_[row];
       if (At(row) == 0) {
         if (hold_[row] > bound * (1 + kRounding)) wrong_.emplace_back(row, 1);
         if (hold_[row] < -bound * (1 + kRounding)) wrong_.emplace_back(row, -1);
-      } else if (At(row) * w_[row] > kRounding * by_effort_(row, row) * bound) {
+      } else if (At(row) * w_[row] > kRounding * SpeedByBound(row)) {
         wrong_.emplace_back(row, 0);
       }
     }
   }
 
+  std::vector<std::pair<Index, int>> wrong_;
+};
+
+// Where it is known what each effort does.
+class HoldsByEffort final : public Holds {
+ public:
+  HoldsByEffort(const MatrixXd& by_effort, const VectorXd& moves, const VectorXd& bounds,
+                std::vector<int>* at, VectorXd* hold)
+      : Holds(bounds, at, hold), by_effort_(by_effort), moves_(moves) {}
+
+ private:
+  void Solve() override {
+    held_.clear();
+    for (Index row = 0; row < moves_.size(); ++row) {
+      hold_[row] = At(row) * bounds_[row];
+      if (At(row) == 0) held_.push_back(row);
+    }
+    w_ = moves_ + by_effort_ * hold_;
+    if (held_.empty()) return;
+    const MatrixXd held = by_effort_(held_, held_);
+    const VectorXd efforts = held.llt().solve(VectorXd(-w_(held_)));
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      hold_[held_[i]] = efforts[static_cast<Index>(i)];
+    }
+    w_ = moves_ + by_effort_ * hold_;
+  }
+  double SpeedByBound(Index row) const override { return by_effort_(row, row) * bounds_[row]; }
+
   const MatrixXd& by_effort_;
   const VectorXd& moves_;
-  const VectorXd& bounds_;
-  VectorXd& hold_;
-  std::vector<int> at_;  // which bound: -1, 1; 0: none
-  std::vector<Index> free_;
-  std::vector<std::pair<Index, int>> wrong_;
-  VectorXd w_;
+  std::vector<Index> held_;
+};
+
+// Where what moves is found by a system: those that are held leave it, so that the fewer move the
+// less there is to solve.
+class HoldsInSystem final : public Holds {
+ public:
+  HoldsInSystem(const MatrixXd& system, const VectorXd& impulses, const std::vector<Index>& rubbing,
+                const VectorXd& speeds, const VectorXd& bounds, std::vector<int>* at,
+                VectorXd* hold, VectorXd* change)
+      : Holds(bounds, at, hold),
+        system_(system),
+        impulses_(impulses),
+        rubbing_(rubbing),
+        speeds_(speeds),
+        change_(*change) {}
+
+ private:
+  void Solve() override {
+    std::vector<bool> is_held(static_cast<std::size_t>(system_.rows()), false);
+    change_.setZero(system_.rows());
+    pushes_ = impulses_;
+    for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+      const auto row = static_cast<Index>(i);
+      hold_[row] = At(row) * bounds_[row];
+      pushes_[rubbing_[i]] += hold_[row];
+      if (At(row) != 0) continue;
+      is_held[static_cast<std::size_t>(rubbing_[i])] = true;
+      change_[rubbing_[i]] = -speeds_[row];
+    }
+    pushes_ -= system_ * change_;
+    moving_.clear();
+    for (Index speed = 0; speed < system_.rows(); ++speed) {
+      if (!is_held[static_cast<std::size_t>(speed)]) moving_.push_back(speed);
+    }
+    if (!moving_.empty()) {
+      const MatrixXd moving = system_(moving_, moving_);
+      const VectorXd moved = moving.llt().solve(VectorXd(pushes_(moving_)));
+      change_(moving_) = moved;
+    }
+    w_ = speeds_ + change_(rubbing_);
+    for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+      const auto row = static_cast<Index>(i);
+      if (At(row) == 0) {
+        hold_[row] = system_.row(rubbing_[i]).dot(change_) - impulses_[rubbing_[i]];
+      }
+    }
+  }
+  double SpeedByBound(Index row) const override {
+    const Index speed = rubbing_[static_cast<std::size_t>(row)];
+    return bounds_[row] / system_(speed, speed);
+  }
+
+  const MatrixXd& system_;
+  const VectorXd& impulses_;
+  const std::vector<Index>& rubbing_;
+  const VectorXd& speeds_;
+  VectorXd& change_;
+  VectorXd pushes_;
+  std::vector<Index> moving_;
 };
 
 }  // namespace
 
 void FindHolds(const MatrixXd& by_effort, const VectorXd& moves, const VectorXd& bounds,
                VectorXd* hold) {
-  Holds(by_effort, moves, bounds, hold).Find();
+  std::vector<int> at(static_cast<std::size_t>(moves.size()), 0);
+  HoldsByEffort(by_effort, moves, bounds, &at, hold).Find();
+}
+
+void FindHeldChange(const MatrixXd& system, const VectorXd& impulses,
+                    const std::vector<Index>& rubbing, const VectorXd& speeds,
+                    const VectorXd& bounds, std::vector<int>* at, VectorXd* hold,
+                    VectorXd* change) {
+  HoldsInSystem(system, impulses, rubbing, speeds, bounds, at, hold, change).Find();
 }
 
 }  // namespace tcs

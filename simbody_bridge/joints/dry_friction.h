@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace tcs {
 
@@ -13,5 +14,14 @@ namespace tcs {
 // Júdice and Pires, Computers & Operations Research 19, 1992).
 void FindHolds(const Eigen::MatrixXd& by_effort, const Eigen::VectorXd& moves,
                const Eigen::VectorXd& bounds, Eigen::VectorXd* hold);
+
+// The same for a step that is implicit, of whose speeds `rubbing` have friction: `system` * change
+// = `impulses` + hold, where speeds + change is 0 of those that hold less than `bounds` (impulses,
+// too). `at` says of each which bound it is thought to be at (-1, 1; 0: it is held), and afterwards
+// at which it is.
+void FindHeldChange(const Eigen::MatrixXd& system, const Eigen::VectorXd& impulses,
+                    const std::vector<Eigen::Index>& rubbing, const Eigen::VectorXd& speeds,
+                    const Eigen::VectorXd& bounds, std::vector<int>* at, Eigen::VectorXd* hold,
+                    Eigen::VectorXd* change);
 
 }  // namespace tcs

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "simbody_bridge/joints/dry_friction.h"
 #include "simbody_bridge/joints/joint_groups.h"
@@ -32,23 +33,23 @@ Vector3d ToEigen(const SimTK::Vec3& v) { return {v[0], v[1], v[2]}; }
 }  // namespace
 
 void ContactStep::AddRow(const SimbodyTree& tree, const Contact& contact, double h) {
-  const SimTK::State& state = tree.evaluated();
-  Eigen::Matrix<double, 3, Eigen::Dynamic> all =
-      Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, state.getNU());
-  SimTK::RowVector_<SimTK::Vec3> jacobian;
-  for (const auto& [index, sign] : {std::pair{contact.first, 1.0}, {contact.second, -1.0}}) {
-    if (index == kWorldBody) continue;
-    const SimTK::MobilizedBody& body = tree.body(index);
-    const SimTK::Vec3 station = body.findStationAtGroundPoint(state, contact.touch.point);
-    tree.matter().calcStationJacobian(state, body.getMobilizedBodyIndex(), station, jacobian);
-    for (int u = 0; u < state.getNU(); ++u) all.col(u) += sign * ToEigen(jacobian[u]);
-  }
-  const Eigen::Map<const Eigen::VectorXd> speeds(state.getU().getContiguousScalarData(),
-                                                 state.getNU());
   Row row;
   row.contact = contact;
-  row.jacobian = all * reduction_;
-  row.before = all * speeds;
+  row.before.setZero();
+  by_all_.setZero(3, reduced_count_);
+  for (const auto& [index, sign] : {std::pair{contact.first, 1.0}, {contact.second, -1.0}}) {
+    const double way = sign;
+    tree.ForEachSpeedOf(index, contact.touch.point, [&](int speed, const SimTK::Vec3& velocity) {
+      const Vector3d by_one = way * ToEigen(velocity);
+      const ReducedSpeed& reduced = reduced_[static_cast<std::size_t>(speed)];
+      by_all_.col(reduced.of) += reduced.times * by_one;
+      row.before += speeds_[speed] * by_one;
+    });
+  }
+  for (Eigen::Index speed = 0; speed < reduced_count_; ++speed) {
+    if (!by_all_.col(speed).isZero(0)) row.speeds.push_back(speed);
+  }
+  row.jacobian = by_all_(Eigen::all, row.speeds);
   const Vector3d normal = ToEigen(contact.touch.normal);
   row.sliding = row.before - normal * normal.dot(row.before);
   row.normal_n = contact.touch.weight * contact.stiffness_npm * contact.touch.depth;
@@ -89,13 +90,29 @@ void ContactStep::Assemble(double h) {
     forces(i) -= h * by_coordinate_[slot] * speeds_(i);
     whole(i, i) += h * by_speed_[slot] + h * h * by_coordinate_[slot];
   }
-  mass_ = reduction_.transpose() * whole * reduction_;
-  force_ = reduction_.transpose() * forces;
+  mass_.setZero(reduced_count_, reduced_count_);
+  force_.setZero(reduced_count_);
+  for (Eigen::Index i = 0; i < forces.size(); ++i) {
+    const ReducedSpeed& own = reduced_[static_cast<std::size_t>(i)];
+    force_[own.of] += own.times * forces[i];
+    for (Eigen::Index k = 0; k < forces.size(); ++k) {
+      const ReducedSpeed& other = reduced_[static_cast<std::size_t>(k)];
+      mass_(other.of, own.of) += other.times * own.times * whole(k, i);
+    }
+  }
+}
+
+Eigen::VectorXd ContactStep::WholeChange() const {
+  Eigen::VectorXd whole(static_cast<Eigen::Index>(reduced_.size()));
+  for (std::size_t i = 0; i < reduced_.size(); ++i) {
+    whole[static_cast<Eigen::Index>(i)] = reduced_[i].times * change_[reduced_[i].of];
+  }
+  return whole;
 }
 
 // Whether one more servo would give more than it can at the end of the step.
 bool ContactStep::ReachLimits(double h) {
-  const Eigen::VectorXd end = speeds_ + reduction_ * change_;
+  const Eigen::VectorXd end = speeds_ + WholeChange();
   bool is_new = false;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     if (at_limit_[i] != 0) continue;
@@ -114,7 +131,7 @@ bool ContactStep::ReachLimits(double h) {
 
 void ContactStep::Solve(double h) {
   system_ = mass_;
-  change_ = force_;
+  impulses_ = h * force_;
   for (Row& row : rows_) {
     row.is_solved_for = !row.is_open;
     if (row.is_open) continue;
@@ -128,13 +145,22 @@ void ContactStep::Solve(double h) {
         (along - across) * normal * normal.transpose() + across * Matrix3d::Identity();
     const Vector3d force =
         weight * contact.stiffness_npm * contact.touch.depth * normal - slope * row.before;
-    system_.noalias() += h * row.jacobian.transpose() * slope * row.jacobian;
-    change_.noalias() += row.jacobian.transpose() * force;
+    const Eigen::Matrix<double, 3, Eigen::Dynamic> by_speed = h * slope * row.jacobian;
+    for (std::size_t i = 0; i < row.speeds.size(); ++i) {
+      const Vector3d column = row.jacobian.col(static_cast<Eigen::Index>(i));
+      for (std::size_t k = 0; k < row.speeds.size(); ++k) {
+        system_(row.speeds[k], row.speeds[i]) +=
+            by_speed.col(static_cast<Eigen::Index>(k)).dot(column);
+      }
+      impulses_[row.speeds[i]] += h * column.dot(force);
+    }
   }
   if (rubbing_.empty()) {
-    change_ = system_.llt().solve(h * change_);
+    change_ = system_.llt().solve(impulses_);
   } else {
-    HoldJoints(h);
+    impulse_bounds_ = h * bounds_;
+    FindHeldChange(system_, impulses_, rubbing_, rubbing_speed_, impulse_bounds_, &at_bound_,
+                   &hold_, &change_);
   }
 }
 
@@ -150,35 +176,22 @@ void ContactStep::FindFriction(const SimbodyTree& tree) {
         .setConstant(FrictionOf(forest, body));
   }
   if (friction.isZero(0)) return;
-  const Eigen::VectorXd bounds = reduction_.cwiseAbs().transpose() * friction;
-  std::vector<double> speeds;
-  for (Eigen::Index column = 0; column < bounds.size(); ++column) {
+  Eigen::VectorXd bounds = Eigen::VectorXd::Zero(reduced_count_);
+  std::vector<double> speeds(static_cast<std::size_t>(reduced_count_));
+  for (std::size_t i = 0; i < reduced_.size(); ++i) {
+    const auto own = static_cast<Eigen::Index>(i);
+    bounds[reduced_[i].of] += std::abs(reduced_[i].times) * friction[own];
+    if (!reduced_[i].is_follower) speeds[static_cast<std::size_t>(reduced_[i].of)] = speeds_[own];
+  }
+  std::vector<double> rubbing_speeds;
+  for (Eigen::Index column = 0; column < reduced_count_; ++column) {
     if (bounds[column] <= 0) continue;
-    int own = 0;
-    while (reduction_(own, column) != 1) ++own;
     rubbing_.push_back(column);
-    speeds.push_back(state.getU()[own]);
+    rubbing_speeds.push_back(speeds[static_cast<std::size_t>(column)]);
   }
   bounds_ = bounds(rubbing_);
-  rubbing_speed_ = Eigen::Map<const Eigen::VectorXd>(speeds.data(), bounds_.size());
-}
-
-void ContactStep::HoldJoints(double h) {
-  const Eigen::LLT<Eigen::MatrixXd> solver(system_);
-  Eigen::MatrixXd by_effort =
-      Eigen::MatrixXd::Zero(system_.rows(), static_cast<Eigen::Index>(rubbing_.size()));
-  for (std::size_t i = 0; i < rubbing_.size(); ++i) {
-    by_effort(rubbing_[i], static_cast<Eigen::Index>(i)) = h;
-  }
-  solver.solveInPlace(by_effort);
-  change_ = solver.solve(h * change_);
-  FindHolds(by_effort(rubbing_, Eigen::all), rubbing_speed_ + change_(rubbing_), bounds_, &hold_);
-  change_ += by_effort * hold_;
-  // Those that are held rest, but for rounding.
-  for (std::size_t i = 0; i < rubbing_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    if (std::abs(hold_[row]) < bounds_[row]) change_[rubbing_[i]] = -rubbing_speed_[row];
-  }
+  rubbing_speed_ = Eigen::Map<const Eigen::VectorXd>(rubbing_speeds.data(), bounds_.size());
+  at_bound_.assign(rubbing_.size(), 0);
 }
 
 // What the contacts do at the end of the step; whether that is not yet what was assumed.
@@ -187,7 +200,8 @@ bool ContactStep::Update(double h) {
   for (Row& row : rows_) {
     const Contact& contact = row.contact;
     const Vector3d normal = ToEigen(contact.touch.normal);
-    const Vector3d velocity = row.before + row.jacobian * change_;
+    const Eigen::VectorXd change = change_(row.speeds);
+    const Vector3d velocity = row.before + row.jacobian * change;
     const double leaving = normal.dot(velocity);
     const double pushes =
         contact.touch.weight * (contact.stiffness_npm * (contact.touch.depth - h * leaving) -
@@ -242,10 +256,11 @@ void ContactStep::Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, d
   rows_.clear();
   const bool is_known = std::isfinite(step.from_rate.back());
   if (is_known) {
-    Reduce(tree, &reduction_);
+    reduced_count_ = Reduce(tree, &reduced_);
     FindForces(tree);
     FindFriction(tree);
     tree.contacts().Find(state, &contacts_);
+    tree.FindJointAxes();
     for (const Contact& contact : contacts_) AddRow(tree, contact, h);
     do {
       Assemble(h);
@@ -254,7 +269,7 @@ void ContactStep::Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, d
         if (!Update(h)) break;
       }
     } while (ReachLimits(h));
-    const Eigen::VectorXd change = reduction_ * change_;
+    const Eigen::VectorXd change = WholeChange();
     const int coordinates = state.getNQ();
     SimTK::Vector speeds = state.getU(), rates;
     for (int i = 0; i < speeds.size(); ++i) speeds[i] += change(i);

@@ -15,6 +15,7 @@
 #include "simbody_bridge/contact_forces.h"
 #include "simbody_bridge/island_engine.h"
 #include "simbody_bridge/model_loads.h"
+#include "simbody_bridge/simbody/tree/mimics.h"
 #include "simbody_bridge/simbody/tree/tree.h"
 
 namespace tcs {
@@ -33,7 +34,8 @@ class ContactStep {
   // A contact's two bodies in one: velocities of the first beside the second at the point.
   struct Row {
     Contact contact;
-    Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian;  // by the reduced speeds, in the world
+    std::vector<Eigen::Index> speeds;                   // the reduced ones that move it
+    Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian;  // by these, in the world
     Eigen::Vector3d before;                             // the velocity at the beginning
     double normal_n = 0;                                // force along the normal
     Eigen::Vector3d sliding = Eigen::Vector3d::Zero();  // across it, as in the last round
@@ -49,11 +51,12 @@ class ContactStep {
   void AddRow(const SimbodyTree& tree, const Contact& contact, double h);
   void FindFriction(const SimbodyTree& tree);
   void Solve(double h);
-  void HoldJoints(double h);
+  Eigen::VectorXd WholeChange() const;  // of all speeds
   bool Update(double h);
 
   // See mimics.h.
-  Eigen::MatrixXd reduction_;
+  std::vector<ReducedSpeed> reduced_;
+  Eigen::Index reduced_count_ = 0;
   // Of all speeds, and reduced with what joints hold against.
   Eigen::MatrixXd whole_mass_, mass_, system_;
   Eigen::VectorXd all_forces_, speeds_;
@@ -62,8 +65,12 @@ class ContactStep {
   Eigen::VectorXd force_, change_;
   // Of the reduced speeds that have friction: which they are, what it holds, and the speeds before.
   std::vector<Eigen::Index> rubbing_;
-  Eigen::VectorXd bounds_, rubbing_speed_, hold_;
+  Eigen::VectorXd bounds_, impulse_bounds_, rubbing_speed_, hold_;
+  std::vector<int> at_bound_;  // see FindHeldChange; in a step each round goes on from the last one
+  Eigen::VectorXd impulses_;
   std::vector<Contact> contacts_;
+  // While a row is made: the velocities that all reduced speeds give.
+  Eigen::Matrix<double, 3, Eigen::Dynamic> by_all_;
   std::vector<Row> rows_;
   std::vector<double> by_speed_, by_coordinate_;
 };

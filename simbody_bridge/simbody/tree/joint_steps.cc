@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 // What closed forms with springs cost grows with the cube of the speeds that push each other:
 // beyond this short steps are cheaper. Dampers alone have no such limit.
-constexpr std::size_t kMostSpeeds = 16;
+constexpr std::size_t kMostSpeeds = 10;
 
 bool IsSprung(const JointDrive& drive) { return drive.stiffness > 0; }
 bool Holds(const JointDrive& drive) { return IsSprung(drive) || drive.damping > 0; }

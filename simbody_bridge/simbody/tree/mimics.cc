@@ -1,32 +1,38 @@
 #include "simbody_bridge/simbody/tree/mimics.h"
 
-#include <vector>
-
 namespace tcs {
 
-void Reduce(const SimbodyTree& tree, Eigen::MatrixXd* reduction) {
+Eigen::Index Reduce(const SimbodyTree& tree, std::vector<ReducedSpeed>* reduced) {
   const SimTK::State& state = tree.evaluated();
   const Forest& forest = tree.forest();
-  const int all = state.getNU();
-  std::vector<int> leader(static_cast<std::size_t>(all), -1);
-  std::vector<double> multiplier(static_cast<std::size_t>(all), 1);
+  const auto all = static_cast<std::size_t>(state.getNU());
+  std::vector<int> leader(all, -1);
+  reduced->assign(all, {});
   for (const ForestJoint& joint : forest.joints) {
     if (joint.leader < 0) continue;
     const int body = forest.joints[static_cast<std::size_t>(joint.leader)].body;
     const auto own = static_cast<std::size_t>(int{tree.body(joint.body).getFirstUIndex(state)});
     leader[own] = tree.body(body).getFirstUIndex(state);
-    multiplier[own] = joint.joint->mimic->multiplier;
+    (*reduced)[own].times = joint.joint->mimic->multiplier;
   }
-  std::vector<int> column(static_cast<std::size_t>(all), -1);
-  int columns = 0;
-  for (int u = 0; u < all; ++u) {
-    if (leader[static_cast<std::size_t>(u)] < 0) column[static_cast<std::size_t>(u)] = columns++;
+  Eigen::Index columns = 0;
+  for (std::size_t u = 0; u < all; ++u) {
+    if (leader[u] < 0) (*reduced)[u].of = columns++;
   }
-  reduction->setZero(all, columns);
-  for (int u = 0; u < all; ++u) {
-    const auto i = static_cast<std::size_t>(u);
-    const int of = leader[i] < 0 ? column[i] : column[static_cast<std::size_t>(leader[i])];
-    (*reduction)(u, of) = multiplier[i];
+  for (std::size_t u = 0; u < all; ++u) {
+    if (leader[u] < 0) continue;
+    (*reduced)[u].of = (*reduced)[static_cast<std::size_t>(leader[u])].of;
+    (*reduced)[u].is_follower = true;
+  }
+  return columns;
+}
+
+void Reduce(const SimbodyTree& tree, Eigen::MatrixXd* reduction) {
+  std::vector<ReducedSpeed> reduced;
+  const Eigen::Index columns = Reduce(tree, &reduced);
+  reduction->setZero(static_cast<Eigen::Index>(reduced.size()), columns);
+  for (std::size_t u = 0; u < reduced.size(); ++u) {
+    (*reduction)(static_cast<Eigen::Index>(u), reduced[u].of) = reduced[u].times;
   }
 }
 

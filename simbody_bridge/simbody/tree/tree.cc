@@ -216,16 +216,10 @@ void SimbodyTree::FindMass(Eigen::MatrixXd* mass) {
     return;
   }
   matter_.realizeCompositeBodyInertias(state_);
-  joint_axes_.resize(static_cast<std::size_t>(all));
+  FindJointAxes();
   const auto first_of = [&](std::size_t body) {
     return static_cast<int>(slots_[body].u) - coordinates;
   };
-  for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    for (int k = 0; k < static_cast<int>(slots_[body].u_count); ++k) {
-      joint_axes_[static_cast<std::size_t>(first_of(body) + k)] =
-          bodies_[body].getHCol(state_, SimTK::MobilizerUIndex(k));
-    }
-  }
   for (std::size_t body = 0; body < bodies_.size(); ++body) {
     const SimTK::SpatialInertia& composite =
         matter_.getCompositeBodyInertia(state_, bodies_[body].getMobilizedBodyIndex());
@@ -248,6 +242,17 @@ void SimbodyTree::FindMass(Eigen::MatrixXd* mass) {
         force[0] += arm % force[1];
         at = next;
       }
+    }
+  }
+}
+
+void SimbodyTree::FindJointAxes() {
+  joint_axes_.resize(static_cast<std::size_t>(state_.getNU()));
+  const auto coordinates = static_cast<std::size_t>(state_.getNQ());
+  for (std::size_t body = 0; body < bodies_.size(); ++body) {
+    for (std::size_t k = 0; k < slots_[body].u_count; ++k) {
+      joint_axes_[slots_[body].u - coordinates + k] =
+          bodies_[body].getHCol(state_, SimTK::MobilizerUIndex(static_cast<int>(k)));
     }
   }
 }

@@ -47,6 +47,25 @@ class SimbodyTree {
   void FindMass(std::span<const double> state, Eigen::MatrixXd* mass);
   // That of the state that was evaluated last.
   void FindMass(Eigen::MatrixXd* mass);
+  // Along which each joint moves what hangs on it, in the state that was evaluated last: for
+  // ForEachSpeedOf.
+  void FindJointAxes();
+  // Takes each speed (a number) that moves the body, with the velocity that 1 of it gives to
+  // `point` (in the world) as a point of the body.
+  template <class Each>
+  void ForEachSpeedOf(int body, const SimTK::Vec3& point, const Each& each) const {
+    for (int at = body; at != kWorldBody;
+         at = forest_.bodies[static_cast<std::size_t>(at)].parent) {
+      const StateSlots& slots = slots_[static_cast<std::size_t>(at)];
+      const SimTK::Vec3 arm =
+          point - bodies_[static_cast<std::size_t>(at)].getBodyOriginLocation(state_);
+      const std::size_t first = slots.u - static_cast<std::size_t>(state_.getNQ());
+      for (std::size_t speed = first; speed < first + slots.u_count; ++speed) {
+        const SimTK::SpatialVec& axis = joint_axes_[speed];
+        each(static_cast<int>(speed), SimTK::Vec3(axis[1] + axis[0] % arm));
+      }
+    }
+  }
   // Makes quaternions unit length again.
   void NormaliseQuaternions(std::span<double> state) const;
   // The same, and takes joints that mimic others to where these are.
@@ -98,7 +117,7 @@ class SimbodyTree {
   std::unique_ptr<Contacts> contacts_;
   SimTK::State state_;
   bool is_loaded_ = false;
-  std::vector<SimTK::SpatialVec> joint_axes_;  // memory of FindMass
+  std::vector<SimTK::SpatialVec> joint_axes_;  // of each speed
   std::span<const Wrench> acting_;             // while a state is evaluated
   struct {
     std::vector<double> state, rate;

@@ -1,9 +1,10 @@
+#include "tests/zoo/robots.h"
+
 #include <tinyxml2.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +17,6 @@
 namespace tcs::fuzz {
 namespace {
 
-namespace fs = std::filesystem;
 using tinyxml2::XMLAttribute;
 using tinyxml2::XMLElement;
 
@@ -25,15 +25,6 @@ constexpr std::array<std::string_view, 11> kNumbers = {
     "0", "-0", "1e-22", "1e-15", "1e-9", "1e-4", "1", "3.14159", "1000", "1e6", "1e15"};
 constexpr std::array<std::string_view, 6> kTypes = {"fixed",     "revolute", "continuous",
                                                     "prismatic", "planar",   "floating"};
-
-std::vector<std::string> Robots() {
-  std::vector<std::string> texts;
-  for (const auto& entry : fs::recursive_directory_iterator(TCS_MODEL_ZOO)) {
-    if (entry.path().extension() == ".urdf") texts.push_back(TextOf(entry.path()));
-  }
-  std::ranges::sort(texts);  // the folder has no order
-  return texts;
-}
 
 void Collect(XMLElement* element, std::vector<XMLElement*>* all) {
   all->push_back(element);
@@ -96,12 +87,12 @@ void Change(tinyxml2::XMLDocument* robot, Mutator* mutator) {
 
 Tally FuzzRobots(int count, std::uint64_t seed) {
   const ModelFolder folder;
-  const std::vector<std::string> robots = Robots();
+  const std::vector<zoo::Robot> robots = zoo::All();
   Tally tally;
   for (int number = 0; number < count; ++number) {
     Mutator mutator(seed * 1'000'003 + static_cast<std::uint64_t>(number), {});
     tinyxml2::XMLDocument robot;
-    robot.Parse(robots[mutator.Below(robots.size())].c_str());
+    robot.Parse(robots[mutator.Below(robots.size())].urdf.c_str());
     for (std::size_t changes = 1 + mutator.Below(5); changes > 0; --changes) {
       Change(&robot, &mutator);
     }

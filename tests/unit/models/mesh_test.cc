@@ -8,6 +8,7 @@
 
 #include "coordinator/models/mesh_library.h"
 #include "coordinator/models/model_mistake.h"
+#include "simbody_bridge/model/convex_hull.h"
 #include "tests/unit/models/model_folder.h"
 
 namespace tcs {
@@ -86,12 +87,41 @@ TEST(MeshLibrary, TakesWhatIsFlatAsAThinPlate) {
   const std::string path = folder.Write("a.stl", BinaryStl({kTetrahedron[0]}, 1));
   MeshLibrary library;
   const auto plate = library.Take(path, {1, 1, 1});
-  EXPECT_TRUE(library.IsFlat(path));
+  EXPECT_TRUE(library.IsFlat(path, {1, 1, 1}));
   ASSERT_EQ(plate->vertices_m.size(), 6u);
   for (const auto& vertex : plate->vertices_m) EXPECT_NEAR(std::abs(vertex[2]), 1.0 / 400, 1e-9);
   const std::string whole = folder.Write("b.stl", BinaryStl(kTetrahedron, 4));
   static_cast<void>(library.Take(whole, {1, 1, 1}));
-  EXPECT_FALSE(library.IsFlat(whole));
+  EXPECT_FALSE(library.IsFlat(whole, {1, 1, 1}));
+}
+
+// By its scale, or for the rounding of a plane that is tilted.
+TEST(MeshLibrary, TakesWhatIsFlatByItsScaleOrButForRoundingAsAPlate) {
+  const ModelFolder folder;
+  const std::string solid = folder.Write("solid.stl", BinaryStl(kTetrahedron, 4));
+  std::vector<std::array<float, 9>> tilted;
+  for (int i = 0; i < 10; ++i) {
+    std::array<float, 9> triangle{};
+    for (int corner = 0; corner < 3; ++corner) {
+      const double x = std::cos(i + 2.1 * corner), y = std::sin(i + 2.1 * corner);
+      triangle[3 * corner] = static_cast<float>(x);
+      triangle[3 * corner + 1] = static_cast<float>(y);
+      triangle[3 * corner + 2] = static_cast<float>(0.3 * x + 0.7 * y);
+    }
+    tilted.push_back(triangle);
+  }
+  const std::string plane = folder.Write("plane.stl", BinaryStl(tilted, 10));
+  MeshLibrary library;
+  for (const auto& [path, scale] : {std::pair{solid, std::array<double, 3>{1, 1, 0}},
+                                    {solid, {1, -1, 1e-7}},
+                                    {plane, {1, 1, 1}}}) {
+    const auto mesh = library.Take(path, scale);
+    ASSERT_NE(mesh, nullptr) << path;
+    EXPECT_TRUE(library.IsFlat(path, scale)) << path;
+    EXPECT_TRUE(SpansVolume(mesh->vertices_m)) << path;
+  }
+  EXPECT_FALSE(library.IsFlat(solid, {1, 1, 1}));
+  EXPECT_EQ(library.Take(solid, {1, 0, 0}), nullptr) << "a line";
 }
 
 TEST(MeshLibrary, TakesNothingOfALine) {

@@ -207,11 +207,6 @@ const Mistake kLinkMistakes[] = {
      "<mesh filename=\"/tmp/.stl\"/>",
      6,
      {"link 'base'"}},
-    {"FlatScale",
-     "<box size=\"1 1 0.1\"/>",
-     "<mesh filename=\"a.stl\" scale=\"1 0 1\"/>",
-     6,
-     {"scale of a mesh is 0"}},
 };
 
 const Mistake kJointMistakes[] = {
