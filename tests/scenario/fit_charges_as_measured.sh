@@ -45,7 +45,7 @@ said=$("$tcsim" fit "$out/measured" 2>/dev/null)
 [[ $said == *"$(cat "$out/costs.yaml")" ]] || fail "the costs are not printed: $said"
 
 # Whoever does not ask for it pays nothing, and has no counts; and is told so.
-"$tcsim" run "$build/examples/quadrotor/scenario.yaml" --duration 100ms --out "$out/plain" >"$out/plain.said"
+"$tcsim" run "$build/examples/quadrotor/scenario.yaml" --duration 100ms --set expect=null --out "$out/plain" >"$out/plain.said"
 head -1 "$out/plain/activations.csv" | grep -q allocations && fail "an ordinary run has counts"
 sentence() {
   local wanted=$1 said status=0
