@@ -27,7 +27,7 @@ holds planner.yaml
 breaks 'body drone: z was between .* first left at 4\.000 s' hover.yaml --set robots.drone.cpu.speed=0.005
 breaks 'body drone: z was between .* first left at 4\.000 s' bridge.yaml --set robots.drone.cpu.speed=0.005
 # How slow the host is decides whether the programs begin late (the gap) or not at all (the misses are not known).
-breaks '(metric gap: last was|controller: misses is not known)' planner.yaml --set robots.drone.cpu.speed=0.1
+breaks '(metric gap: last was|controller: misses is not known)' planner.yaml --set robots.drone.cpu.speed=0.05
 examples=$build/examples
 breaks 'predator/controller: missed' "$examples/predator_prey/scenario.yaml" --duration 2s --set robots.predator.cpu.speed=0.005
 breaks 'drone/rate_loop: missed was [1-9]' "$examples/quadrotor/scenario.yaml" --duration 2s --set robots.drone.cpu.speed=0.01

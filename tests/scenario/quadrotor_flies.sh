@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The example flies, twice the same to the byte where computing costs what is set; on a slower computer it
-# loses more height to the same push. A swarm of three flies, too.
+# keeps its height worse. A swarm of three flies, too.
 # Topics: examples, models, cores, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
@@ -11,9 +11,13 @@ fly() {
   "$tcsim" run "$folder/scenario.yaml" --out "$out/$1" "${@:2}" >"$out/said" 2>&1 ||
     [[ $1 == slow && $? == 3 ]] || fail "$(cat "$out/said")"
 }
-lost() {  # NAME: how far it falls after the push; one that never took off lost all
+# How far from its height of 2 m it is. On a slow computer it climbs and falls as it happens, or never takes off.
+astray() {  # NAME: root mean square, in m, from 3 s on
+  awk -F, '$2 == "drone/base_link" && $1 > 3 { sum += ($5 - 2) ^ 2; ++n } END { printf "%.4f", sqrt(sum / n) }' "$out/$1/bodies.csv"
+}
+lost() {  # NAME: how far it falls after the push
   awk -F, '$2 == "drone/base_link" { if ($1 <= 6) before = $5; else if (least == "" || $5 < least) least = $5 }
-    END { printf "%.4f", (before > 2 ? before : 2) - least }' "$out/$1/bodies.csv"
+    END { printf "%.4f", before - least }' "$out/$1/bodies.csv"
 }
 fly first --accounting fixed --duration 7s
 fly second --accounting fixed --duration 6.2s  # the push comes at 6 s
@@ -29,9 +33,11 @@ fixed=$(lost first)
 awk -v a="$fixed" 'BEGIN { exit !(a > 0.1 && a < 0.5) }' || fail "with fixed costs it loses $fixed m"
 fly quick --duration 7s --set robots.drone.cpu.speed=1
 fly slow --duration 7s --set robots.drone.cpu.speed=0.05
-quick=$(lost quick) slow=$(lost slow)
-printf 'height lost: %s m with fixed costs, %s m, %s m on a slow computer\n' "$fixed" "$quick" "$slow"
-awk -v a="$quick" -v b="$slow" 'BEGIN { exit !(a > 0.1 && a < 0.5 && b > 1.1 * a) }' || fail "a slow computer loses no more height"
+quick=$(lost quick)
+awk -v a="$quick" 'BEGIN { exit !(a > 0.1 && a < 0.5) }' || fail "measured it loses $quick m"
+quick=$(astray quick) slow=$(astray slow)
+printf 'astray by %s m, and by %s m on a slow computer\n' "$quick" "$slow"
+awk -v a="$quick" -v b="$slow" 'BEGIN { exit !(b > 1.3 * a) }' || fail "a slow computer keeps its height as well"
 (cd "$folder" && ./swarm.py 3 --hz 250) >"$folder/swarm.$$.yaml"
 trap 'rm -rf "$out" "$folder/swarm.$$.yaml"' EXIT
 "$tcsim" run "$folder/swarm.$$.yaml" --accounting fixed --duration 4s --out "$out/swarm" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
