@@ -28,6 +28,9 @@ class BareProcessTest : public testing::TestWithParam<bool> {
     _exit(1);
   }
   ~BareProcessTest() override {
+    close(asked_);
+    close(answered_);
+    if (child_ <= 0) return;  // to signal -1 is to signal everybody
     kill(child_, SIGKILL);
     waitpid(child_, nullptr, 0);
   }
@@ -75,8 +78,7 @@ TEST_P(BareProcessTest, IsEndedByASignal) {
   ASSERT_EQ(waitpid(child_, &status, 0), child_);
   EXPECT_TRUE(WIFSIGNALED(status));
   EXPECT_EQ(WTERMSIG(status), SIGTERM);
-  child_ = fork();
-  if (child_ == 0) _exit(0);
+  child_ = -1;
 }
 
 INSTANTIATE_TEST_SUITE_P(Levels, BareProcessTest, testing::Bool(), [](const auto& its) {
