@@ -42,8 +42,10 @@ void Spawns::Begin(Task& maker, const TrappedCall& call) {
 
 bool Spawns::HasMadeChild(Task& maker, Moment moment) {
   LookForBirths(maker, moment);
-  return std::none_of(maker.births.begin(), maker.births.end(),
-                      [](const Birth& birth) { return birth.call.WaitsForChild(); });
+  // A child of the maker's parent may never be found (TakeInChild).
+  return std::none_of(maker.births.begin(), maker.births.end(), [](const Birth& birth) {
+    return birth.call.WaitsForChild() && (birth.call.flags & CLONE_PARENT) == 0;
+  });
 }
 
 bool Spawns::IsUnborn(pid_t tid, Moment moment) {
