@@ -52,8 +52,7 @@ HostDuration MeasuredMeter::TimeToLook(MeteredThread& thread, std::uint64_t tsc,
 
 Meter::Found MeasuredMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
                                  const CpuClock& clock) {
-  timer_.Expired(thread.asked.ns(),
-                 static_cast<double>(tsc - thread.asked_tsc) / rate_.ticks_per_ns);
+  timer_.Expired(thread.asked.ns(), NsBetween(thread.asked_tsc, tsc));
   CheckIfDue(thread, tsc, clock);
   const ProgramTime now = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
   return IsAtHorizon(now, OwnTime(thread.page->base_time_ns), horizon, thread.is_watched)

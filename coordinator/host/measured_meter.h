@@ -31,8 +31,8 @@ class MeasuredMeter : public Meter {
   void ChargeCall(MeteredThread&, VirtualDuration) override {}  // its time is on the clock
 
  protected:
-  std::int64_t NsBetween(std::uint64_t tsc, std::uint64_t later_tsc) const {
-    return static_cast<std::int64_t>(static_cast<double>(later_tsc - tsc) / rate_.ticks_per_ns);
+  double NsBetween(std::uint64_t tsc, std::uint64_t later_tsc) const {
+    return static_cast<double>(later_tsc - tsc) / rate_.ticks_per_ns;
   }
 
  private:

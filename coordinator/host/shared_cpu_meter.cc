@@ -30,7 +30,7 @@ Meter::Found SharedCpuMeter::Look(MeteredThread& thread, std::uint64_t tsc, Prog
   const std::int64_t before_ns = thread.known_cpu_ns;
   Check(thread, tsc, clock);
   const bool others_had_it =
-      HostNs(thread.known_cpu_ns - before_ns) < HostNs(NsBetween(thread.asked_tsc, tsc) / 2);
+      static_cast<double>(thread.known_cpu_ns - before_ns) < NsBetween(thread.asked_tsc, tsc) / 2;
   thread.least_sleep = others_had_it ? std::min(thread.least_sleep * 2, kMostSleep) : kLeastSleep;
   return MeasuredMeter::Look(thread, tsc, horizon, clock);
 }
