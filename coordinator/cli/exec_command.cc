@@ -78,7 +78,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
     return Fail(error);
   }
   const std::vector<std::string>& command = arguments.command;
-  std::optional<VirtualDuration> call_cost, allocation_cost, outside_takes;
+  std::optional<VirtualDuration> call_cost, allocation_cost, outside_takes, patience;
   if (const std::string error = TakeDuration("call-cost", arguments.call_cost, &call_cost);
       !error.empty()) {
     return Fail(error);
@@ -93,6 +93,10 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
       !error.empty()) {
     return Fail(error);
   }
+  if (const std::string error = TakeDuration("patience", arguments.patience, &patience);
+      !error.empty()) {
+    return Fail(error);
+  }
   std::error_code gone;
   const std::string folder = std::filesystem::current_path(gone);
   if (gone) return Fail("the current folder does not exist any more; change to another folder");
@@ -103,6 +107,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
 
   Scenario scenario;
   scenario.duration = VirtualDuration::Nanoseconds(shm::kNeverNs);
+  if (patience.has_value()) scenario.patience = HostDuration::Nanoseconds(patience->ns());
   ClientSpec client;
   client.name = command[0];
   client.command = command;

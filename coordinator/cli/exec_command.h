@@ -21,6 +21,7 @@ struct ExecArguments {
   std::string date;    // when the run begins, such as 2005-03-18; the same
   std::vector<std::string> outside;  // names of what is waited for outside of the run
   std::string outside_takes;         // under fixed accounting; as by default where it is empty
+  std::string patience;              // with silence under fixed accounting; the same
 };
 
 // Runs the command alone on a computer, without dynamics; the exit status is the command's own.

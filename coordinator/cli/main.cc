@@ -138,6 +138,10 @@ int main(int argc, char** argv) {
       ->expected(1);
   run->add_option("--drift", arguments.drift,
                   "TIME: how far progress may drift apart, such as 1ms");
+  run->add_option("--patience", arguments.patience,
+                  "TIME: how long, of real time, a program may compute while its clock stands: "
+                  "without a call under --accounting fixed (default: 5s), on an ideal robot, or "
+                  "under --sync callback (default: 10s)");
   CLI::Option* seeded =
       run->add_option("--seed", seed, "the seed, which replaces ${seed} in the scenario");
   run->add_option("--overlay", arguments.overlays,
@@ -237,6 +241,10 @@ int main(int argc, char** argv) {
   exec->add_option("--allocation-cost", allocation_cost,
                    "TIME: the cost of one memory allocation under --accounting fixed; 0 for none "
                    "(default: 250ns, and 2us where a thread makes thousands without waiting)");
+  std::string patience;
+  exec->add_option("--patience", patience,
+                   "TIME: how long, of real time, a thread may compute without a call under "
+                   "--accounting fixed before that costs it time (default: 5s)");
   std::string dds = "endpoints";
   exec->add_option(
           "--dds", dds,
@@ -431,7 +439,7 @@ int main(int argc, char** argv) {
                                               call_cost, allocation_cost,
                                               dds == "sockets" ? tcs::DdsTransport::kSockets
                                                                : tcs::DdsTransport::kEndpoints,
-                                              uptime, date, outside, outside_takes},
+                                              uptime, date, outside, outside_takes, patience},
                                              options)
                           : tcs::FlushStdout(tcs::RunCommand(arguments, options));
   });

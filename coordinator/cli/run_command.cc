@@ -113,7 +113,8 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
   for (const std::string& error :
        {TakeDuration("duration", arguments.duration, &overrides.duration),
         TakeDuration("stop-at", arguments.stop_at, &stop_at),
-        TakeDuration("drift", arguments.drift, &overrides.drift)}) {
+        TakeDuration("drift", arguments.drift, &overrides.drift),
+        TakeDuration("patience", arguments.patience, &overrides.patience)}) {
     if (!error.empty()) return Fail(error);
   }
   auto loaded = LoadScenario(arguments.scenario, overrides);

@@ -12,7 +12,7 @@
 namespace tcs {
 
 struct RunArguments {
-  std::string scenario = "scenario.yaml", duration, stop_at, drift, out = "out";
+  std::string scenario = "scenario.yaml", duration, stop_at, drift, patience, out = "out";
   std::string debugged;  // ROBOT/CLIENT, for gdb; empty: none
   std::optional<std::uint64_t> seed;
   std::vector<std::string> overlays;  // files

@@ -16,7 +16,9 @@
 #include "coordinator/host/starvation_watch.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
+#include "coordinator/scenario/patience.h"
 #include "coordinator/tasks/cpu_clock.h"
+#include "coordinator/text/spoken.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -364,11 +366,11 @@ void Engine::AwaitStop(Task& task) {
 void Engine::ChargeSilence(Task& task) {
   Process& client = *task.process->client;
   client.pays_for_silence = task.metered.pays_for_silence = true;
-  run_.Warn(client.name +
-            " has computed for 5 s without a call or an allocation, which costs nothing under "
-            "--accounting fixed; from here on each half a millisecond of that, by the processor's "
-            "clock, costs it 0.5 ms, and the run may not repeat; run it with --accounting "
-            "measured");
+  run_.Warn(fmt::format(
+      "{} has computed for {} without a call or an allocation, which costs nothing under "
+      "--accounting fixed; from here on each half a millisecond of that, by the processor's "
+      "clock, costs it 0.5 ms, and the run may not repeat; run it with --accounting measured",
+      client.name, Spoken(PatienceOf(run_.scenario).silent.ns())));
 }
 
 // On an ideal robot computing never takes time. The thread waits until somebody has run, and looks
@@ -378,10 +380,10 @@ void Engine::StepAside(Task& task) {
     task.spins = false;
     return;
   }
-  run_.Warn(task.process->name +
-            " has computed for 10 s at one instant of virtual time; its robot is ideal, so the "
-            "world waits for it, but no longer than that; from here on it counts as waiting for "
-            "other programs");
+  run_.Warn(fmt::format(
+      "{} has computed for {} at one instant of virtual time; its robot is ideal, so the world "
+      "waits for it, but no longer than that; from here on it counts as waiting for other programs",
+      task.process->name, Spoken(PatienceOf(run_.scenario).ideal.ns())));
   waker_.Wait(task, {awaited::OthersRun{}});
   has_spinners_ = true;
   waker_.Refresh(*task.process->robot);

@@ -16,6 +16,8 @@
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_file_limit.h"
 #include "coordinator/os/own_computer.h"
+#include "coordinator/scenario/patience.h"
+#include "coordinator/text/spoken.h"
 #include "shm/check.h"
 
 namespace tcs {
@@ -25,9 +27,6 @@ namespace {
 constexpr HostDuration kUnseenPoll = HostDuration::Milliseconds(1);
 constexpr HostDuration kDebuggerPoll = HostDuration::Milliseconds(10);
 constexpr HostDuration kOutsidePoll = HostDuration::Milliseconds(200);
-// A program may hold the world at one instant for so much of its own time, and of the host's.
-constexpr VirtualDuration kMostHeld = VirtualDuration::Seconds(10);
-constexpr HostDuration kMostStanding = HostDuration::Seconds(10);
 constexpr int kDeathTurns = 25;  // of kOutsidePoll
 constexpr std::int64_t kLookEveryNs = 200'000'000;
 constexpr std::uint64_t kLookPause = 50;  // times what the last look took, at the least
@@ -45,7 +44,7 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
       run_(scenario, options, real_time_.error != 0, WhyNoDuplicates() != 0),
       activations_(run_.IsCallback()),
       executor_(MakeExecutor(run_.gates_only)),
-      host_cpu_(*executor_) {
+      host_cpu_(*executor_, PatienceOf(scenario).ideal) {
   TellOfWaits();
   TellOfEnds();
 }
@@ -86,7 +85,7 @@ VirtualTime Engine::HorizonFor(Task& task, VirtualTime* idle_until) {
 // A program that computes for as long as the run is to be, all at one instant of the world's, would
 // have the world stand for ever. Short runs, too, may have long plans computed.
 VirtualDuration Engine::MostHeld() const {
-  return run_.IsInGrace() ? kMostHeld : std::max(kMostHeld, run_.scenario.duration);
+  return run_.IsInGrace() ? Patience{}.held : PatienceOf(run_.scenario).held;
 }
 
 VirtualDuration Engine::LeftToHold(const Task& task) const {
@@ -99,7 +98,7 @@ VirtualDuration Engine::LeftToHold(const Task& task) const {
 bool Engine::StandsForEver(VirtualCpu& cpu) const {
   const HostTime now = RunningTime();
   if (std::exchange(cpu.stands_at, cpu.progress) != cpu.progress) cpu.stands_since = now;
-  return now - cpu.stands_since > kMostStanding;
+  return now - cpu.stands_since > PatienceOf(run_.scenario).ideal;
 }
 
 // The thread stays where it is, and the world goes on to the end.
@@ -107,16 +106,16 @@ void Engine::LetWorldGoOnWithout(Task& task) {
   const double at_s = task.cpu->progress.seconds();
   if (task.process->robot->is_ideal) {
     run_.Warn(
-        fmt::format("{} has been busy for {:.0f} s at one instant of virtual time; its robot is "
+        fmt::format("{} has been busy for {} at one instant of virtual time; its robot is "
                     "ideal, so the world waits for it, but no longer than that; from {:.3f} s on "
                     "the world goes on without it; check whether it answers its own answers",
-                    task.process->name, kMostStanding.seconds(), at_s));
+                    task.process->name, Spoken(PatienceOf(run_.scenario).ideal.ns()), at_s));
   } else {
     run_.Warn(
-        fmt::format("{} has computed for {:.0f} s at one instant of the world; under --sync "
-                    "callback the world waits for it, but no longer than the run is to last; from "
+        fmt::format("{} has computed for {} at one instant of the world; under --sync "
+                    "callback the world waits for it, but no longer than that; from "
                     "{:.3f} s on the world goes on without it",
-                    task.process->name, MostHeld().seconds(), at_s));
+                    task.process->name, Spoken(MostHeld().ns()), at_s));
   }
   host_cpu_.active().Hold(task);
   task.ComeTo(task.cpu->progress);

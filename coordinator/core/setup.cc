@@ -27,10 +27,12 @@
 #include "coordinator/host/measured_meter.h"
 #include "coordinator/host/shared_cpu_meter.h"
 #include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/end_signals.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/shared_memory.h"
 #include "coordinator/processes/client_folders.h"
+#include "coordinator/scenario/patience.h"
 #include "coordinator/tasks/signal_sets.h"
 #include "shm/check.h"
 
@@ -205,9 +207,7 @@ bool Engine::HasSignal() const {
 }
 
 std::string Engine::PrepareSignals() {
-  sigset_t blocked;
-  sigemptyset(&blocked);
-  for (const int signal : {SIGTERM, SIGHUP, SIGINT}) sigaddset(&blocked, signal);
+  const sigset_t blocked = EndSignals();
   sigprocmask(SIG_BLOCK, &blocked, nullptr);
   signal(SIGPIPE, SIG_IGN);
   signal_fd_.Reset(signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK));
@@ -258,7 +258,7 @@ void Engine::MakeRobots() {
 std::string Engine::PrepareHostCpu() {
   std::unique_ptr<Meter> meter;
   if (run_.IsFixed()) {
-    meter = std::make_unique<FixedMeter>();
+    meter = std::make_unique<FixedMeter>(PatienceOf(run_.scenario).silent);
   } else if (run_.gates_only) {
     meter = std::make_unique<SharedCpuMeter>(clock_.rate());
   } else {

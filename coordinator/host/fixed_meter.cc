@@ -56,7 +56,7 @@ Meter::Found FixedMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramT
   if (thread.silent_from_ns < 0) thread.silent_from_ns = cpu_ns;
   if (thread.pays_for_silence) return LookAtSilent(thread, now, horizon, cpu_ns);
   const HostDuration silent = HostNs(cpu_ns - thread.silent_from_ns);
-  return silent < kSilentAfter ? Found::kGoesOn : Found::kIsSilent;
+  return silent < silent_after_ ? Found::kGoesOn : Found::kIsSilent;
 }
 
 Meter::Found FixedMeter::LookAtSilent(MeteredThread& thread, const shm::ClockReading& now,

@@ -16,11 +16,12 @@ namespace tcs {
 class FixedMeter : public Meter {
  public:
   static constexpr HostDuration kLookEvery = HostDuration::Milliseconds(50);
-  // By its CPU clock, whoever else has the processor: then it is found silent.
-  static constexpr HostDuration kSilentAfter = HostDuration::Seconds(5);
   // Of a client that is known for it.
   static constexpr HostDuration kLookAtSilentEvery = HostDuration::Microseconds(500);
   static constexpr VirtualDuration kSilentCost = VirtualDuration::Microseconds(500);
+
+  // A thread is found silent after so long by its CPU clock, whoever else has the processor.
+  explicit FixedMeter(HostDuration silent_after) : silent_after_(silent_after) {}
 
   void SetRates(const MeteredThread& thread, const SetCosts& costs,
                 ClockGrant& grant) const override;
@@ -41,6 +42,8 @@ class FixedMeter : public Meter {
  private:
   static Found LookAtSilent(MeteredThread& thread, const shm::ClockReading& now,
                             ProgramTime horizon, std::int64_t cpu_ns);
+
+  HostDuration silent_after_;
 };
 
 }  // namespace tcs

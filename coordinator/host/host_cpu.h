@@ -34,7 +34,9 @@ namespace tcs {
 
 class HostCpu {
  public:
-  explicit HostCpu(Executor& executor) : executor_(executor), active_(executor) {}
+  // ideal_patience: after which a thread of an ideal robot is found silent.
+  HostCpu(Executor& executor, HostDuration ideal_patience)
+      : executor_(executor), active_(executor), ideal_meter_(ideal_patience) {}
 
   // Before all else. Makes the detector's process.
   [[nodiscard]] std::string Open(std::unique_ptr<Meter> meter);

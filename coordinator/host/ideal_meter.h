@@ -9,8 +9,12 @@ namespace tcs {
 
 class IdealMeter final : public FixedMeter {
  public:
-  static constexpr int kMostLooks = 200;  // kLookEvery apart: 10 s
   static constexpr HostDuration kLookAgainEvery = HostDuration::Milliseconds(1);  // from then on
+
+  // A thread is found silent after so long, of real time.
+  explicit IdealMeter(HostDuration silent_after)
+      : FixedMeter(silent_after),
+        most_looks_(static_cast<int>(silent_after.ns() / kLookEvery.ns())) {}
 
   void SetRates(const MeteredThread& thread, const SetCosts&, ClockGrant& grant) const override {
     FixedMeter::SetRates(thread, {.call = {}, .allocation = VirtualDuration()}, grant);
@@ -25,11 +29,14 @@ class IdealMeter final : public FixedMeter {
     return thread.is_silent ? kLookAgainEvery : kLookEvery;
   }
   Found Look(MeteredThread& thread, std::uint64_t, ProgramTime, const CpuClock&) override {
-    if (!thread.is_silent && ++thread.silent_looks < kMostLooks) return Found::kGoesOn;
+    if (!thread.is_silent && ++thread.silent_looks < most_looks_) return Found::kGoesOn;
     thread.is_silent = true;
     return Found::kIsSilent;
   }
   void ChargeCall(MeteredThread&, VirtualDuration) override {}
+
+ private:
+  int most_looks_;
 };
 
 }  // namespace tcs

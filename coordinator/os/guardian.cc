@@ -13,6 +13,7 @@
 #include <string>
 
 #include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/end_signals.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/keeper.h"
@@ -40,8 +41,7 @@ int AwaitKeeper(pid_t keeper, const sigset_t& awaited) {
     const int signal = sigwaitinfo(&awaited, &info);
     // ^C reaches the coordinator by itself; what somebody has sent, only this process may have.
     const bool is_for_all = signal == SIGINT && info.si_code == SI_KERNEL;
-    const bool ends = signal == SIGTERM || signal == SIGHUP || signal == SIGINT;
-    if (ends && !is_for_all) kill(keeper, signal);
+    if (signal != SIGCHLD && signal > 0 && !is_for_all) kill(keeper, signal);
     int status = 0;
     while (waitpid(keeper, &status, WNOHANG | WUNTRACED) == keeper) {
       if (!WIFSTOPPED(status)) return status;
@@ -114,9 +114,8 @@ int RunGuarded(const std::function<int()>& coordinate, GuardLimits limits) {
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   ShareState();
   ShareClaimsOfChildren();
-  sigset_t awaited, before;
-  sigemptyset(&awaited);
-  for (const int signal : {SIGCHLD, SIGTERM, SIGHUP, SIGINT}) sigaddset(&awaited, signal);
+  sigset_t awaited = EndSignals(), before;
+  sigaddset(&awaited, SIGCHLD);
   sigprocmask(SIG_BLOCK, &awaited, &before);
   const pid_t guardian = getpid(), keeper = fork();
   if (keeper == 0) {

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "coordinator/os/descendants.h"
+#include "coordinator/os/end_signals.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/say.h"
@@ -45,8 +46,7 @@ class Keeper {
  public:
   Keeper(pid_t guardian, pid_t coordinator, const GuardLimits& limits, GuardedState* state)
       : guardian_(guardian), coordinator_(coordinator), limits_(limits), state_(*state) {
-    sigemptyset(&awaited_);
-    for (const int signal : {SIGCHLD, SIGTERM, SIGHUP, SIGINT}) sigaddset(&awaited_, signal);
+    sigaddset(&awaited_, SIGCHLD);
     LookLater();
   }
 
@@ -54,7 +54,7 @@ class Keeper {
   int Watch() {
     for (;;) {
       const int signal = NextSignal();
-      if (signal == SIGTERM || signal == SIGHUP || signal == SIGINT) PassOn(signal);
+      if (signal != SIGCHLD && signal > 0) PassOn(signal);
       int status = 0;
       while (waitpid(coordinator_, &status, WNOHANG | WUNTRACED) == coordinator_) {
         if (!WIFSTOPPED(status)) return status;
@@ -178,7 +178,7 @@ class Keeper {
   const pid_t guardian_, coordinator_;
   const GuardLimits limits_;
   GuardedState& state_;
-  sigset_t awaited_;
+  sigset_t awaited_ = EndSignals();
   std::int64_t look_at_ns_ = kNever, stop_by_ns_ = kNever, stop_turn_ns_ = kNever;
   std::uint64_t beats_seen_ = 0;
   std::int64_t computed_ns_ = 0;
@@ -228,6 +228,8 @@ void Keep(pid_t guardian, const GuardLimits& limits, GuardedState* state,
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != keeper) _exit(127);
     TellWhereItDies();
+    // In a script's background it is ignored, and one that comes before it is waited for were lost.
+    signal(SIGINT, SIG_DFL);
     const int status = coordinate();
     fflush(nullptr);  // from the terminal's foreground
     // With the last process of a group whose parent is in another one, the kernel sends SIGHUP to

@@ -61,6 +61,9 @@ void LoadHead(const YamlMap& top, Scenario* scenario) {
   if (const YamlValue* drift = top.Find("drift")) {
     scenario->drift_bound = drift->AsPositiveDuration();
   }
+  if (const YamlValue* patience = top.Find("patience")) {
+    scenario->patience = HostDuration::Nanoseconds(patience->AsPositiveDuration().ns());
+  }
   if (const YamlValue* seed = top.Find("seed")) scenario->seed = seed->AsUnsigned64();
   if (const YamlValue* period = top.Find("csv_period")) {
     scenario->csv_period = period->AsPositiveDuration();
@@ -90,9 +93,9 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   Append(SettingsOfOptions(overrides.set), &settings);
   const YamlMap top =
       ParseYaml(path, ReadFile(path, "a scenario file"), settings, mistakes).AsMap();
-  top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "csv_contacts", "dynamics",
-                 "bodies", "models", "robots", "network", "channels", "chains", "clock", "ros",
-                 "metrics", "expect"});
+  top.AllowOnly({"name", "duration", "drift", "patience", "seed", "csv_period", "csv_contacts",
+                 "dynamics", "bodies", "models", "robots", "network", "channels", "chains", "clock",
+                 "ros", "metrics", "expect"});
   Scenario scenario;
   scenario.path = path;
   for (const Setting& setting : settings) scenario.set.push_back(setting.text);
@@ -102,6 +105,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
       overrides.duration.has_value() && *overrides.duration < scenario.duration;
   scenario.duration = overrides.duration.value_or(scenario.duration);
   scenario.drift_bound = overrides.drift.value_or(scenario.drift_bound);
+  if (overrides.patience) scenario.patience = HostDuration::Nanoseconds(overrides.patience->ns());
   scenario.seed = overrides.seed.value_or(scenario.seed);
 
   const Variables variables{scenario.seed, FolderOf(path), overrides.result_directory,

@@ -13,13 +13,13 @@
 
 namespace tcs {
 
-// What the command line sets in the file's stead. The next three, which win over `set`, must be
+// What the command line sets in the file's stead. The next four, which win over `set`, must be
 // valid (durations above 0).
 struct ScenarioOverrides {
   std::vector<std::string> overlays;  // files, see overlay.h; checked like the scenario's
   std::vector<std::string> set;       // "KEY=VALUE", see set_option.h, after them; the same
   std::optional<VirtualDuration> duration;
-  std::optional<VirtualDuration> drift;
+  std::optional<VirtualDuration> drift, patience;
   std::optional<std::uint64_t> seed;  // also what ${seed} stands for
   // Absolute: what ${result_dir} stands for, where clients may have folders.
   std::string result_directory;

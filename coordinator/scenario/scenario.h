@@ -299,6 +299,7 @@ struct Scenario {
   std::vector<std::string> set;  // what --overlay and --set have put in the file's stead
   VirtualDuration duration = VirtualDuration::Seconds(10);
   VirtualDuration drift_bound = VirtualDuration::Milliseconds(1);
+  std::optional<HostDuration> patience;  // none: by why it has to be patient (patience.h)
   std::uint64_t seed = 1;
   std::optional<WorldSpec> world;                 // none: no dynamics
   std::map<std::string, std::string> urdf_files;  // of the models that come from such

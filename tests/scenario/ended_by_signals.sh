@@ -73,6 +73,23 @@ for ends in TERM:143:15 INT:130:2 HUP:129:1; do
   [[ $(tail -n 1 "$out/said") == "ended by $number" ]] || fail "SIG$signal to a program: $(cat "$out/said")"
 done
 
+# Whoever is told to ignore that the terminal is gone does so.
+begun nohup "${run[@]}"
+kill -HUP "$tcsim_pid"
+sleep 0.3
+kill -TERM "$tcsim_pid" || fail "SIGHUP to a run under nohup ended it: $(cat "$out/said")"
+ended 143 "SIGTERM to a run under nohup"
+
+# Whenever SIGINT comes, though a script's background ignores it: none is lost while the run is prepared.
+for milliseconds in $(seq 0 4 60); do
+  "${run[@]}" >"$out/said" 2>&1 &
+  tcsim_pid=$!
+  for _ in $(seq 5000); do coordinator_of "$tcsim_pid" >/dev/null 2>&1 && break; sleep 0.002; done
+  sleep "$(printf '0.%03d' "$milliseconds")"
+  kill -INT "$tcsim_pid"
+  ended 130 "SIGINT $milliseconds ms after its begin"
+done
+
 # Several at the same moment are one: to tcsim, to its group, and while it cannot look. The same moment is a second of
 # real time, and a busy host may take longer to pass them on: so one of several tries is enough.
 send_several() {  # HOW, to tcsim's process

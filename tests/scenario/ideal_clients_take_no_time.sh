@@ -67,6 +67,7 @@ PY
 run() {  # NAME COMMANDS SENTENCE
   cat >"$out/$1.yaml" <<YAML
 duration: 200ms
+patience: 1s
 robots:
   world: {cpu: ideal, clients: {$2}}
   robot: {clients: {sleeps: {command: [sleep, "9"]}}}
@@ -74,9 +75,8 @@ YAML
   timeout 80 "$tcsim" run "$out/$1.yaml" --accounting fixed --out "$out/$1" >"$out/$1.said" 2>&1 || fail "status $?: $(cat "$out/$1.said")"
   grep -Eq "$3" "$out/$1.said" || fail "$(cat "$out/$1.said")"
 }
-# 10 s of real time each.
-beside run talkers 'talker: {command: [python3, talks.py, "0"]}, other: {command: [python3, talks.py, "1"]}' \
-  'warning: world/(talker|other) has been busy for 10 s at one instant of virtual time; its robot is ideal, .* from 0.000 s on the world goes on without'
-beside run spinner 'spinner: {command: [python3, -c, "while True: pass"]}' \
-  'warning: world/spinner has computed for 10 s at one instant of virtual time; its robot is ideal'
+run talkers 'talker: {command: [python3, talks.py, "0"]}, other: {command: [python3, talks.py, "1"]}' \
+  'warning: world/(talker|other) has been busy for 1 s at one instant of virtual time; its robot is ideal, .* from 0.000 s on the world goes on without'
+run spinner 'spinner: {command: [python3, -c, "while True: pass"]}' \
+  'warning: world/spinner has computed for 1 s at one instant of virtual time; its robot is ideal'
 all_done

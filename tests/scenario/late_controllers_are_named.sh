@@ -21,18 +21,20 @@ says '10 ms *0 of 1[89][0-9]'
 sed -i 's/^    force\[2\] +=/    burn(0.015)\n    force[2] +=/; s/^import json/import json, time/' controller.py
 sed -i 's/^MASS/def burn(seconds):\n    until = time.thread_time() + seconds\n    while time.thread_time() < until: pass\n\nMASS/' controller.py
 for accounting in fixed measured; do
-  said --duration 6s --accounting $accounting --out "$out/slow-$accounting"
+  [[ $accounting == fixed ]] && seconds=6 || seconds=3
+  said --duration "${seconds}s" --accounting $accounting --out "$out/slow-$accounting"
   says 'hover/controller missed all [0-9]* of its deadlines (10 ms, the period of sensors).*: it computes 1[456]\.\?[0-9]* ms each time, 1[456][0-9] % of a core'
-  says 'hover/controller sent commands made of samples up to [12]\.\?[0-9]* s old'
+  says 'hover/controller sent commands made of samples up to \([12]\.\?[0-9]* s\|[5-9][0-9]* ms\) old'
   says 'hover/controller never read [0-9]* of [0-9]* datagrams from sensors'
-  python3 - "$out/slow-$accounting" <<'PY' || fail "the figures of a slow controller"
+  python3 - "$out/slow-$accounting" "$seconds" <<'PY' || fail "the figures of a slow controller"
 import csv, json, sys
 summary = json.load(open(sys.argv[1] + "/summary.json"))
+seconds = int(sys.argv[2])
 figures = summary["clients"]["hover/controller"]
 assert summary["verdict"][0].startswith("hover/controller missed all"), summary["verdict"]
 [sensors] = figures["inputs"]
 assert sensors["from"] == "sensors" and sensors["sent"] == sensors["received"] + sensors["lost"] + sensors["unread"], sensors
-assert sensors["sent"] > 500 and 0.6 < sensors["received"] / sensors["sent"] < 0.75, sensors
+assert sensors["sent"] > 90 * seconds - 40 and 0.6 < sensors["received"] / sensors["sent"] < 0.75, sensors
 # Each sample was released when it came into the socket, at a whole 10 ms; and the oldest is as old as it waited.
 rows = [r for r in csv.DictReader(open(sys.argv[1] + "/activations.csv")) if r["client"] == "hover/controller"]
 samples = [r for r in rows if r["cause"] == "input" and int(r["release_ns"]) % 10_000_000 == 0 and int(r["charged_ns"]) > 10_000_000]
@@ -40,7 +42,7 @@ assert len(samples) >= 0.97 * sensors["received"], (len(samples), sensors)
 worst = max(int(r["end_ns"]) - int(r["release_ns"]) for r in samples)
 assert abs(figures["response_ns"]["max"] - worst) <= 20_000_000, (figures["response_ns"], worst)
 assert figures["deadline"]["missed"] == figures["deadline"]["judged"] > 0.97 * sensors["received"], figures
-assert figures["command_age_ns"]["max"] > 1_000_000_000, figures
+assert figures["command_age_ns"]["max"] > seconds / 6 * 1_000_000_000, figures
 late = figures["late"]
 assert late["others_ns"] == {} and late["queued_ns"] + late["executed_ns"] >= 0.99 * late["total_ns"], late
 PY
@@ -72,8 +74,8 @@ PY
 
 # All of it: the controller does not even begin.
 said --set 'robots.hover.clients.planner.command=[python3, planner.py, "100", "0"]' \
-  --set robots.hover.clients.planner.start=0s --duration 2s --out "$out/starved"
-says 'hover/controller was starved: for [12]\.\?[0-9]* s from 0\.[0-9]* s on it was ready, and hover/planner, of higher priority, had the core'
+  --set robots.hover.clients.planner.start=0s --duration 1300ms --out "$out/starved"
+says 'hover/controller was starved: for 1\.\?[0-9]* s from 0\.[0-9]* s on it was ready, and hover/planner, of higher priority, had the core'
 
 # A deadline of its own, by fixed priorities, too.
 said --set robots.hover.clients.controller.deadline=1us --duration 1s --accounting fixed --out "$out/own"
@@ -90,23 +92,23 @@ begun = time.clock_gettime_ns(time.CLOCK_MONOTONIC)
 if sys.argv[1] == "timer":
     fd = libc.timerfd_create(1, 0)
     libc.timerfd_settime(fd, 0, struct.pack("4q", 0, 10_000_000, 0, 10_000_000), None)
-for i in range(1, 101):
+for i in range(1, 51):
     if sys.argv[1] == "timer": os.read(fd, 8)
     else: libc.clock_nanosleep(1, 1, struct.pack("2q", *divmod(begun + i * 10_000_000, 1_000_000_000)), None)
     burn(float(sys.argv[2]))
 PY
 cat >loop.yaml <<'YAML'
-duration: 3s
+duration: 2s
 robots: {r: {clients: {loop: {command: [python3, loop.py, WAY, "SECONDS"], class: periodic}}}}
 YAML
 for way in sleep timer; do
   sed "s/WAY/$way/; s/SECONDS/0.004/" loop.yaml >well.yaml
   said well.yaml --out "$out/loop"
   ! grep '^! ' "$out/said" || fail "$way: it kept up"
-  says '10 ms *0 of [19][0-9]*'
+  says '10 ms *0 of [45][0-9]'
   sed "s/WAY/$way/; s/SECONDS/0.015/" loop.yaml >slow.yaml
   said slow.yaml --out "$out/loop"
-  says '^! r/loop missed \(all [0-9]*\|9[0-9] of [0-9]*\) of its deadlines (10 ms, the period of its timer), .*: it computes 1[56][0-9.]* ms each time, 1[56][0-9] % of a core'
+  says '^! r/loop missed \(all [0-9]*\|4[0-9] of [0-9]*\) of its deadlines (10 ms, the period of its timer), .*: it computes 1[56][0-9.]* ms each time, 1[56][0-9] % of a core'
 done
 
 # What is sent to a port before anybody listens there was never in a socket: the first one that is read is no older.

@@ -71,7 +71,8 @@ for qt in 5 6; do
   beside repeats "Qt $qt" 0 1 ./qt$qt
 done
 all_done
-for workers in 2 3 4 8; do
+((rounds > 1)) && pools="2 3 4 8" || pools="2 8"
+for workers in $pools; do
   for cores in 1 4; do beside repeats "pools of $workers on $cores" 0 $cores python3 "$programs/pool.py" $workers; done
   all_done
 done

@@ -10,7 +10,7 @@ type strace >/dev/null 2>&1 || exit 77
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 for cpus in 1 auto; do
-  "$tcsim" run "$build/examples/predator_prey/scenario.yaml" --duration 3s --pace 0.6 --host-cpus "$cpus" --out "$out/run" \
+  "$tcsim" run "$build/examples/predator_prey/scenario.yaml" --duration 1500ms --pace 0.6 --host-cpus "$cpus" --out "$out/run" \
     >"$out/said" 2>&1 &
   run=$!
   # It may have to wait for a processor first.
@@ -23,7 +23,7 @@ for cpus in 1 auto; do
   wait $run || status=$?
   ! grep -q 'not permitted' "$out/strace" || { echo "nobody may be traced here"; exit 77; }
   ((status == 0)) || fail "with $cpus: $(cat "$out/said")"
-  (($(wc -l <"$out/calls") > 5000)) || fail "the coordinator was not traced: $(cat "$out/strace")"
+  (($(wc -l <"$out/calls") > 2000)) || fail "the coordinator was not traced: $(cat "$out/strace")"
   python3 - "$out/run/summary.json" <<'PY' || fail "with $cpus: $(cat "$out/said")"
 import json, sys
 s = json.load(open(sys.argv[1]))
@@ -31,6 +31,6 @@ assert not s["warnings"], s["warnings"]
 assert s["staleness_ns"] == 0 and s["drift_ns"] <= 1_000_000, s
 for name, c in s["clients"].items():
     assert 0.1 * c["host_cpu_ns"] < c["charged_ns"] <= 1.02 * c["host_cpu_ns"] + 200_000, (name, c)
-assert s["clients"]["predator/planner"]["charged_ns"] > 300_000_000, s
+assert s["clients"]["predator/planner"]["charged_ns"] > 150_000_000, s
 PY
 done

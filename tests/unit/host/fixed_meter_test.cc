@@ -7,6 +7,7 @@
 namespace tcs {
 namespace {
 
+constexpr HostDuration kSilentAfter = HostDuration::Seconds(5);
 constexpr ProgramTime kFar = OwnTime(kStart + 1000 * kMs);
 
 class FixedMeterTest : public testing::Test {
@@ -29,7 +30,7 @@ class FixedMeterTest : public testing::Test {
   shm::ClockPage page_{};
   MeteredThread thread_;
   ClockGrant grant_;
-  FixedMeter meter_;
+  FixedMeter meter_{kSilentAfter};
   std::uint64_t tsc_ = 0;
   std::int64_t cpu_ns_ = 7 * kMs;
   Meter::CpuClock clock_ = [this] { return cpu_ns_; };
@@ -62,7 +63,7 @@ TEST_F(FixedMeterTest, NoSleepOfTheCoordinatorsIsTooLong) {
 
 TEST_F(FixedMeterTest, WhoComputesForLongWithoutACallIsSilent) {
   EXPECT_EQ(Compute({}), Meter::Found::kGoesOn);  // here it is seen first
-  EXPECT_EQ(Compute(FixedMeter::kSilentAfter - HostNs(1)), Meter::Found::kGoesOn);
+  EXPECT_EQ(Compute(kSilentAfter - HostNs(1)), Meter::Found::kGoesOn);
   EXPECT_EQ(Compute(HostNs(1)), Meter::Found::kIsSilent);
 }
 
@@ -76,8 +77,8 @@ TEST_F(FixedMeterTest, WaitingForTheProcessorIsNoSilence) {
 TEST_F(FixedMeterTest, AnyCallBreaksTheSilence) {
   EXPECT_EQ(Compute({}), Meter::Found::kGoesOn);
   page_.executed_adjust += 1000;
-  EXPECT_EQ(Compute(FixedMeter::kSilentAfter), Meter::Found::kGoesOn);
-  EXPECT_EQ(Compute(FixedMeter::kSilentAfter), Meter::Found::kIsSilent);
+  EXPECT_EQ(Compute(kSilentAfter), Meter::Found::kGoesOn);
+  EXPECT_EQ(Compute(kSilentAfter), Meter::Found::kIsSilent);
 }
 
 class PaysForSilence : public FixedMeterTest {

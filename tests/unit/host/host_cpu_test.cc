@@ -40,7 +40,7 @@ class HostCpuTest : public testing::Test {
   }
 
   NotingExecutor executor_;
-  HostCpu cpu_{executor_};
+  HostCpu cpu_{executor_, HostDuration::Seconds(10)};
   shm::ThreadSlot slot_{};
   HostThread thread_{.tid = 1}, other_{.tid = 2};
   Meter::CpuClock clock_ = [] { return std::int64_t{0}; };

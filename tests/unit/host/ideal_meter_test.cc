@@ -7,6 +7,8 @@
 namespace tcs {
 namespace {
 
+constexpr int kMostLooks = 200;
+
 class IdealMeterTest : public testing::Test {
  protected:
   IdealMeterTest() {
@@ -25,18 +27,18 @@ class IdealMeterTest : public testing::Test {
 
   shm::ClockPage page_{};
   MeteredThread thread_;
-  IdealMeter meter_;
+  IdealMeter meter_{kMostLooks * FixedMeter::kLookEvery};
 };
 
 TEST_F(IdealMeterTest, WhoComputesOnAndOnIsSilent) {
-  EXPECT_EQ(LookTimes(IdealMeter::kMostLooks - 1), Meter::Found::kGoesOn);
+  EXPECT_EQ(LookTimes(kMostLooks - 1), Meter::Found::kGoesOn);
   EXPECT_EQ(LookTimes(1), Meter::Found::kIsSilent);
 }
 
 TEST_F(IdealMeterTest, EachDispatchHasItsOwnLooks) {
-  EXPECT_EQ(LookTimes(IdealMeter::kMostLooks - 1), Meter::Found::kGoesOn);
+  EXPECT_EQ(LookTimes(kMostLooks - 1), Meter::Found::kGoesOn);
   Dispatch(false);
-  EXPECT_EQ(LookTimes(IdealMeter::kMostLooks - 1), Meter::Found::kGoesOn);
+  EXPECT_EQ(LookTimes(kMostLooks - 1), Meter::Found::kGoesOn);
 }
 
 TEST_F(IdealMeterTest, WhoWasFoundSilentIsLookedAtSoon) {

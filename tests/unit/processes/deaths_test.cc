@@ -75,7 +75,7 @@ class DeathsTest : public testing::Test {
   Waker waker_{run_, activations_};
   Reactor reactor_;
   NoExecutor executor_;
-  HostCpu cpu_{executor_};
+  HostCpu cpu_{executor_, HostDuration::Seconds(10)};
   SlotCheck check_{true, [] { return std::int64_t{0}; }};
   UsageBook usage_{run_.table, check_};
   Deaths deaths_{run_, waker_, reactor_, cpu_, usage_};

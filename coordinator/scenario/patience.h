@@ -1,0 +1,24 @@
+// How long programs may compute while their clocks stand, before tcsim does something about it.
+#pragma once
+
+#include <algorithm>
+
+#include "coordinator/scenario/scenario.h"
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+struct Patience {
+  HostDuration silent = HostDuration::Seconds(5);       // without a call, under set costs
+  HostDuration ideal = HostDuration::Seconds(10);       // on an ideal robot
+  VirtualDuration held = VirtualDuration::Seconds(10);  // under callback, of its own time
+};
+
+// A scenario that says how long it is says so for all of them.
+inline Patience PatienceOf(const Scenario& scenario) {
+  if (!scenario.patience) return {.held = std::max(Patience{}.held, scenario.duration)};
+  return {*scenario.patience, *scenario.patience,
+          VirtualDuration::Nanoseconds(scenario.patience->ns())};
+}
+
+}  // namespace tcs
