@@ -40,16 +40,44 @@ std::int64_t HostClockNs(clockid_t id) {
   return shm::ToNs(t);
 }
 
+namespace {
+
+// One instant by both clocks.
+struct TscReading {
+  std::uint64_t tsc;
+  std::int64_t raw_ns;
+};
+
+// The tightest of some: where the host was away between the two, they are of no one instant.
+TscReading ReadTsc() {
+  TscReading best{};
+  std::uint64_t least_ticks = UINT64_MAX;
+  for (int i = 0; i < 8; ++i) {
+    const std::uint64_t before_tsc = __rdtsc();
+    const std::int64_t raw_ns = HostClockNs(CLOCK_MONOTONIC_RAW);
+    const std::uint64_t ticks = __rdtsc() - before_tsc;
+    if (ticks >= least_ticks) continue;
+    least_ticks = ticks;
+    best = {before_tsc + ticks / 2, raw_ns};
+  }
+  return best;
+}
+
+constexpr std::int64_t kCalibrationNs = 10'000'000;
+
+// When the process was loaded: a run has much to prepare before it asks for the rate.
+const TscReading tsc_at_load = ReadTsc();
+
+}  // namespace
+
 std::uint64_t CalibrateTsc() {
-  const std::int64_t start_ns = HostClockNs(CLOCK_MONOTONIC_RAW);
-  const std::uint64_t start_tsc = __rdtsc();
-  std::int64_t end_ns;
-  do {
-    end_ns = HostClockNs(CLOCK_MONOTONIC_RAW);
-  } while (end_ns - start_ns < 20'000'000);
-  const std::uint64_t ticks = __rdtsc() - start_tsc;
-  return static_cast<std::uint64_t>(static_cast<double>(end_ns - start_ns) /
-                                    static_cast<double>(ticks) * 4294967296.0);
+  const std::int64_t left_ns =
+      tsc_at_load.raw_ns + kCalibrationNs - HostClockNs(CLOCK_MONOTONIC_RAW);
+  timespec left = shm::ToTimespec(std::max<std::int64_t>(left_ns, 0));
+  while (nanosleep(&left, &left) != 0 && errno == EINTR) continue;
+  const TscReading now = ReadTsc();
+  return static_cast<std::uint64_t>(static_cast<double>(now.raw_ns - tsc_at_load.raw_ns) /
+                                    static_cast<double>(now.tsc - tsc_at_load.tsc) * 4294967296.0);
 }
 
 namespace {

@@ -30,7 +30,8 @@ enum class Level : int {
   kKernelOnly = 14
 };
 
-// Nanoseconds per TSC tick times 2^32, measured against CLOCK_MONOTONIC_RAW for some 20 ms.
+// Nanoseconds per TSC tick times 2^32, measured against CLOCK_MONOTONIC_RAW since the
+// process was loaded, and for at least 10 ms: it sleeps for what is missing.
 std::uint64_t CalibrateTsc();
 
 // The thread, 0 for the calling one, runs on that CPU only. While it runs on another one the caller

@@ -15,7 +15,7 @@ class RunClock {
   // CLOCK_MONOTONIC.
   static HostTime Now();
 
-  // Measures the TSC, which takes a moment: once, before the run.
+  // Measures the TSC, which may take a moment: once, before the run.
   void Calibrate();
   // The run begins now.
   void Start();

@@ -3,6 +3,9 @@ set -euo pipefail
 build=$1
 source_root=$2
 tcsim=$build/bin/tcsim
+# Debian's Python goes first: it has the packages, and another one may be a script that starts three programs (pyenv), a
+# thousand times a test.
+PATH=/usr/bin:$PATH
 if [[ ${3:-} == in_container ]]; then
   export TCS_BUILD=$build
   tcsim=$source_root/tests/scenario/contained_tcsim.sh
