@@ -5,6 +5,8 @@ include(CMakePackageConfigHelpers)
 install(TARGETS tcsim RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 # Guests of other programs, which nobody links with: not where the linker looks.
 install(TARGETS tcs_preload tcs_allocations tcs_dds_endpoints LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/tcs")
+# What tcsim loads where there is a world.
+install(TARGETS tcs_physics LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/tcs")
 # What tcsim starts for `--view` and `tcsim view`, for the commands that do not fly, and for DDS by sockets.
 install(TARGETS tcsim_tools tcsim_view tcs_dds_gateway RUNTIME DESTINATION "${CMAKE_INSTALL_LIBDIR}/tcs")
 

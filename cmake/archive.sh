@@ -13,7 +13,7 @@ licences=$folder/share/doc/tcsim/carried
 mkdir -p "$carried" "$licences"
 files=()
 
-programs=("$folder/bin/tcsim" "$tcs/tcsim-tools" "$tcs/tcsim-view" "$tcs/tcs-dds-gateway")
+programs=("$folder/bin/tcsim" "$tcs/libtcs_physics.so" "$tcs/tcsim-tools" "$tcs/tcsim-view" "$tcs/tcs-dds-gateway")
 # Not of libtcs_dds.so: it is for programs that bring their Cyclone DDS.
 while read -r library; do
   [[ $library =~ /(libc|libm|libdl|librt|libpthread|libstdc\+\+|libgcc_s)\.so ]] && continue

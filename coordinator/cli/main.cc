@@ -30,6 +30,7 @@
 #include "coordinator/os/guardian.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/view/launch.h"
+#include "simbody_bridge/library/physics_library.h"
 
 namespace {
 
@@ -390,6 +391,7 @@ int main(int argc, char** argv) {
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;
   options.preload_library = tcs::PreloadLibrary();
   options.allocation_library = tcs::AllocationLibrary();
+  tcs::SetPhysicsLibrary(tcs::PhysicsLibrary());
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
         "this tcsim was started inside a run of another tcsim; start it outside of that run");

@@ -38,6 +38,8 @@ std::string DdsLibrary() { return Library("libtcs_dds.so"); }
 
 std::string AllocationLibrary() { return Library("libtcs_allocations.so"); }
 
+std::string PhysicsLibrary() { return Library("libtcs_physics.so"); }
+
 std::string OwnProgram() { return ProgramFolder() / kProgram; }
 
 std::string ToolsProgram() { return Part(kTools, ProgramFolder()); }

@@ -16,6 +16,9 @@ std::string DdsLibrary();
 // The library that charges allocations under fixed accounting, beside the shim.
 std::string AllocationLibrary();
 
+// The engines.
+std::string PhysicsLibrary();
+
 // tcsim itself, also where tcsim-tools asks (cli/tools.h), and that.
 std::string OwnProgram();
 std::string ToolsProgram();
