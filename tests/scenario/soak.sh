@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
-# 200 clients of mixed kinds for 12 s of virtual time: nobody hangs, loses anything or leaves
+# 200 clients of mixed kinds for 6 s of virtual time: nobody hangs, loses anything or leaves
 # anything behind, the coordinator does not grow, and progress stays together. A third argument
 # is for how many seconds instead.
 # Topics: soak, clean-up, drift.
-seconds=${3:-12}
+seconds=${3:-6}
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 ln -s "$build/bin/soak_client" "$out"  # other tests have some, too

@@ -49,7 +49,7 @@ goes names lock "${stood}python3 waits for a lock or a condition that no thread 
 goes names child "${stood}sh waits for a signal, such as that of a child's end; [a-z]+ \(pid [0-9]+\) is stopped by a signal" \
   "${unprivileged[@]}" "$tcsim" exec -- sh -c 'sleep 5 & kill -STOP $!; wait'
 goes names left '^tcsim: sh has ended; the run goes on for the background processes that it has left: dash \(pid [0-9]+\).*; Ctrl-C' \
-  "${unprivileged[@]}" "$tcsim" exec -- sh -c 'while :; do sleep 1; done & sleep 3'
+  "${unprivileged[@]}" "$tcsim" exec -- sh -c 'while :; do sleep 1000; done & sleep 3'
 
 cat >"$out/shares.c" <<'C'
 #define _GNU_SOURCE
