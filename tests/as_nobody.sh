@@ -10,5 +10,5 @@ install_for_everybody() {
   local build=$1 folder=$2
   shift 2
   install -D -m 755 -t "$folder/bin" "$build/bin/tcsim" "$build/bin/tcsim-tools" "${@/#/$build/bin/}"
-  install -D -m 755 -t "$folder/lib" "$build"/lib/libtcs_{preload,allocations,dds}.so
+  install -D -m 755 -t "$folder/lib" "$build"/lib/libtcs_{preload,allocations,dds,physics}.so
 }

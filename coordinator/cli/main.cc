@@ -112,6 +112,7 @@ int Parse(CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  tcs::SetPhysicsLibrary(tcs::PhysicsLibrary());
   CLI::App app{"run robot programs in a simulation in which computing takes time", "tcsim"};
   app.formatter(tcs::HelpFormatter());  // before the commands, which inherit it
   app.require_subcommand(1);
@@ -391,7 +392,6 @@ int main(int argc, char** argv) {
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;
   options.preload_library = tcs::PreloadLibrary();
   options.allocation_library = tcs::AllocationLibrary();
-  tcs::SetPhysicsLibrary(tcs::PhysicsLibrary());
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
         "this tcsim was started inside a run of another tcsim; start it outside of that run");
