@@ -92,12 +92,15 @@ std::optional<RobotRows> MeasureRobots(int rounds, bool quick) {
     if (!row) return std::nullopt;
     results.models.push_back(std::move(*row));
   }
-  const auto swarms = CostsInTurns(kSwarms.size(), rounds, [&results](std::size_t i) {
-    return RunOnce(kSwarms[i], results.virtual_s);
-  });
+  auto asked = kSwarms;
+  if (quick) {
+    for (SwarmCase& swarm : asked) swarm.drones = (swarm.drones + 4) / 5;
+  }
+  const auto swarms = CostsInTurns(
+      asked.size(), rounds, [&](std::size_t i) { return RunOnce(asked[i], results.virtual_s); });
   if (!swarms) return std::nullopt;
-  for (std::size_t i = 0; i < kSwarms.size(); ++i) {
-    results.swarms.push_back({kSwarms[i], (*swarms)[i]});
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    results.swarms.push_back({asked[i], (*swarms)[i]});
   }
   return results;
 }

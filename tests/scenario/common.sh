@@ -19,9 +19,9 @@ shared_at_start=$(ls /dev/shm)
 new_in_shm() {
   local now i
   now=$(comm -13 <(sort <<<"$shared_at_start") <(ls /dev/shm | sort))
-  for ((i = 0; i < 20; ++i)); do
+  for ((i = 0; i < 100; ++i)); do
     [[ -n $now ]] || return 0
-    sleep 1
+    sleep 0.2
     now=$(comm -12 <(printf "%s\n" "$now") <(ls /dev/shm | sort))
   done
   printf "%s\n" "$now"

@@ -81,7 +81,7 @@ kill -TERM "$tcsim_pid" || fail "SIGHUP to a run under nohup ended it: $(cat "$o
 ended 143 "SIGTERM to a run under nohup"
 
 # Whenever SIGINT comes, though a script's background ignores it: none is lost while the run is prepared.
-for milliseconds in $(seq 0 4 60); do
+for milliseconds in $(seq 0 10 60); do
   "${run[@]}" >"$out/said" 2>&1 &
   tcsim_pid=$!
   for _ in $(seq 5000); do coordinator_of "$tcsim_pid" >/dev/null 2>&1 && break; sleep 0.002; done

@@ -6,7 +6,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 [[ -e /usr/include/fastdds/dds/domain/DomainParticipant.hpp ]] && type g++ >/dev/null 2>&1 || { echo "Fast DDS (libfastrtps-dev) was not found"; exit 77; }
 out=$(mktemp -d)
 # Whoever is ended by a signal, as its run's end does it, leaves what Fast DDS has shared.
-forget_shared() { new_in_shm | grep fastrtps | sed 's|^|/dev/shm/|' | xargs -r rm -f || true; }
+forget_shared() { comm -13 <(sort <<<"$shared_at_start") <(ls /dev/shm | sort) | grep fastrtps | sed 's|^|/dev/shm/|' | xargs -r rm -f || true; }
 trap 'forget_shared; rm -rf "$out"' EXIT
 g++ -std=c++20 -O1 "$source_root/tests/programs/fast_dds_hover.cc" -lfastrtps -lfastcdr -o "$out/hover_dds"
 cp "$source_root/examples/hover/hover_dds.yaml" "$out"
