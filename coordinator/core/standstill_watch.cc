@@ -90,7 +90,9 @@ void StandstillWatch::NoteStandstill(HostTime now, VirtualTime furthest) {
   if (stood < kPatience) return;
   has_said_standstill_ = true;
   const std::string why =
-      unmanaged_.AnyRuns() || unknown_children_.AnyRuns()
+      std::any_of(run_.exiting.begin(), run_.exiting.end(), IsExiting)
+          ? "it waits for the kernel, which is about to end a thread"
+      : unmanaged_.AnyRuns() || unknown_children_.AnyRuns()
           ? "it waits for threads or processes that tcs does not manage: " +
                 Joined(WhatComputesUnmanaged())
           : "only input from outside could make it go on; " + Joined(WhatIsAwaited());

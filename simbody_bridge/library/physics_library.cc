@@ -41,6 +41,7 @@ class Meanwhile {
 };
 
 MakeDynamicsFunction* Load() {
+  if (library_path.empty()) throw DynamicsError("nobody has said where the physics are");
   // OpenBLAS makes its threads when it is loaded: the coordinator has none that it does not know.
   const Meanwhile alone("OPENBLAS_NUM_THREADS", "1");
   void* library = dlopen(library_path.c_str(), RTLD_LAZY | RTLD_LOCAL);

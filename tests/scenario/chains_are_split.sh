@@ -92,7 +92,7 @@ hops = {(hop["of"], hop["name"]): hop["ns"] for hop in camera["worst"][0]["hops"
 assert hops["sensor", "camera"] == 7 * MS, hops
 assert 20 * MS <= hops["program", "r/seer"] <= 28 * MS, hops
 assert hops["waiting", "r/pilot"] <= 11 * MS, hops
-assert 1 * MS <= hops["program", "r/pilot"] <= 3 * MS, hops
+assert 0.97 * MS <= hops["program", "r/pilot"] <= 3 * MS, hops  # a measured millisecond is one by the thread's CPU clock
 assert 85 * MS <= hops["held", "r/pilot"] <= 115 * MS, hops  # or a reading longer
 # Its first command of each image is the reaction: all of that but for what is held.
 assert 30 * MS <= camera["reaction_ns"]["p50"] <= 45 * MS, camera["reaction_ns"]

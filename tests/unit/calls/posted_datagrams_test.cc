@@ -9,6 +9,7 @@
 
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
+#include "simbody_bridge/library/physics_library.h"
 
 namespace tcs {
 namespace {
@@ -22,6 +23,7 @@ class PostedDatagramsTest : public testing::Test {
  protected:
   explicit PostedDatagramsTest(shm::Sync sync = shm::Sync::kConsistent)
       : run_(Scenario{}, Options(sync), false) {
+    SetPhysicsLibrary(TCS_PHYSICS_LIBRARY);
     scenario_.world.emplace();
     for (const char* name : {"one", "other"}) {
       scenario_.world->bodies.emplace_back().name = name;
