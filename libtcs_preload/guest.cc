@@ -85,14 +85,16 @@ bool BeganInUnseenCall(GuestThread& thread) {
 
 }  // namespace
 
-void CountCall(GuestThread& thread) {
+void CountCall(GuestThread& thread, Concern concern) {
   if (g_header->gates_only != 0) {
     KeepPorter();
     const bool is_fixed = g_header->accounting == shm::Accounting::kFixed;
-    if (is_fixed || thread.in_call || IsAtGate(thread) || BeganInUnseenCall(thread)) {
+    const bool is_dispatched = thread.slot->clock.horizon_ns != 0;
+    const bool has_to_wait = is_fixed && (concern == Concern::kOthers || !is_dispatched);
+    if (has_to_wait || thread.in_call || IsAtGate(thread) || BeganInUnseenCall(thread)) {
       AwaitTurn(thread);
     }
-    thread.in_call = is_fixed;
+    thread.in_call = is_fixed && concern == Concern::kOthers;
   } else if ((thread.slot->clock.counts_work & shm::kIsAhead) != 0 && !IsAtGate(thread)) {
     AwaitTurn(thread);
   }

@@ -84,17 +84,22 @@ inline GuestThread* Current() {
 // Charges a set cost: of a call, or of an allocation.
 void Charge(shm::ClockPage& page, std::int64_t cost_ns);
 
+// Whom an interposed call concerns. One that concerns nobody but its thread neither does anything
+// that others could see nor looks at what they do: it reads a clock.
+enum class Concern { kOthers, kNobody };
+
 // Counts an interposed call, and charges it where it has a set cost. Where nothing but its gate
-// keeps the thread from running on, it first waits there until it may.
-void CountCall(GuestThread& thread);
+// keeps the thread from running on, it first waits there until it may; for a call that concerns
+// nobody only if it has not come back from there, or if its last call concerned others.
+void CountCall(GuestThread& thread, Concern concern);
 
 // The thread is about to do what others may see, as a descriptor that becomes ready.
 inline void BeginChange(GuestThread& thread) { thread.in_call = true; }
 
 // The same as Current for an interposed call, which it counts where calls are counted.
-inline GuestThread* Enter() {
+inline GuestThread* Enter(Concern concern = Concern::kOthers) {
   GuestThread* t = Current();
-  if (t != nullptr && __builtin_expect(t->slot->clock.counts_work != 0, 0)) CountCall(*t);
+  if (t != nullptr && __builtin_expect(t->slot->clock.counts_work != 0, 0)) CountCall(*t, concern);
   return t;
 }
 

@@ -13,7 +13,7 @@
 using namespace tcs::preload;
 
 TCS_EXPORT int sched_getcpu(void) noexcept {
-  const Entered t;
+  const GuestThread* const t = Enter(Concern::kNobody);
   if (t != nullptr) return static_cast<int>(t->slot->core);
   unsigned cpu = 0;
   RawSyscall(SYS_getcpu, Arg(&cpu), 0, 0);
@@ -21,7 +21,7 @@ TCS_EXPORT int sched_getcpu(void) noexcept {
 }
 
 long tcs::preload::GetCpu(unsigned* cpu, unsigned* node) {
-  const Entered t;
+  const GuestThread* const t = Enter(Concern::kNobody);
   if (t == nullptr) return RawSyscall(SYS_getcpu, Arg(cpu), Arg(node), 0);
   if (cpu != nullptr) *cpu = t->slot->core;
   if (node != nullptr) *node = 0;
@@ -33,18 +33,18 @@ TCS_EXPORT int getcpu(unsigned* cpu, unsigned* node) noexcept {
 }
 
 TCS_EXPORT int get_nprocs(void) noexcept {
-  const Entered t;
+  const GuestThread* const t = Enter(Concern::kNobody);
   return t != nullptr ? static_cast<int>(t->slot->cores) : TCS_REAL(get_nprocs)();
 }
 
 TCS_EXPORT int get_nprocs_conf(void) noexcept {
-  const Entered t;
+  const GuestThread* const t = Enter(Concern::kNobody);
   return t != nullptr ? static_cast<int>(t->slot->cores) : TCS_REAL(get_nprocs_conf)();
 }
 
 TCS_EXPORT long sysconf(int name) noexcept {
   if (name == _SC_NPROCESSORS_ONLN || name == _SC_NPROCESSORS_CONF) {
-    const Entered t;
+    const GuestThread* const t = Enter(Concern::kNobody);
     if (t != nullptr) return static_cast<long>(t->slot->cores);
   }
   return TCS_REAL(sysconf)(name);

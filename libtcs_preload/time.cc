@@ -46,7 +46,7 @@ int SetClockRefused(GuestThread* t) { return t == nullptr ? 0 : Fail(EPERM); }
 namespace tcs::preload {
 
 long ClockGettime(clockid_t id, timespec* ts) {
-  const Entered t;
+  GuestThread* const t = Enter(Concern::kNobody);
   if (t != nullptr) {
     const ClockOfId clock = tcs::shm::ClockOf(id);
     const std::int64_t ns = ReadClock(*t, clock);
@@ -65,7 +65,7 @@ long ClockGettime(clockid_t id, timespec* ts) {
 }
 
 long Gettimeofday(timeval* tv, void* zone) {
-  const Entered t;
+  GuestThread* const t = Enter(Concern::kNobody);
   if (t == nullptr) return RawSyscall(SYS_gettimeofday, Arg(tv), Arg(zone));
   if (zone != nullptr) RawSyscall(SYS_gettimeofday, 0, Arg(zone));
   if (tv != nullptr) *tv = ToTimeval(NowNs(*t) + OffsetNs(Clock::kRealtime));
@@ -85,7 +85,7 @@ long ClockGetres(clockid_t id, timespec* resolution) {
     // Whether there is such a process or thread the kernel knows.
     if (const long error = RawSyscall(SYS_clock_getres, id, 0); error != 0) return error;
   }
-  if (Enter() != nullptr && clock.kind != ClockKind::kNone) {
+  if (Enter(Concern::kNobody) != nullptr && clock.kind != ClockKind::kNone) {
     if (resolution != nullptr) *resolution = timespec{0, 1};
     return 0;
   }
@@ -132,7 +132,7 @@ TCS_EXPORT clock_t clock(void) {
 }
 
 TCS_EXPORT clock_t times(tms* out) {
-  const Entered t;
+  GuestThread* const t = Enter(Concern::kNobody);
   if (t == nullptr) return ToErrno(RawSyscall(SYS_times, Arg(out)));
   const std::int64_t tick = kNsPerSecond / sysconf(_SC_CLK_TCK);
   if (out != nullptr) {
@@ -143,7 +143,7 @@ TCS_EXPORT clock_t times(tms* out) {
 
 TCS_EXPORT int getrusage(__rusage_who_t who, rusage* usage) noexcept {
   const long result = RawSyscall(SYS_getrusage, who, Arg(usage));
-  const Entered t;
+  GuestThread* const t = Enter(Concern::kNobody);
   if (t == nullptr || result != 0) return static_cast<int>(ToErrno(result));
   const std::int64_t charged = who == RUSAGE_SELF       ? ProcessCpuNs(*t)
                                : who == RUSAGE_CHILDREN ? ChildrenCpuNs(*t)

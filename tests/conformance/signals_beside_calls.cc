@@ -17,7 +17,7 @@ using namespace conformance;
 
 namespace {
 
-constexpr int kRounds = 500, kMostSignals = 2'000, kUnhandled = 15;
+constexpr int kRounds = 300, kMostSignals = 2'000, kUnhandled = 15;
 
 std::atomic<int> g_handled{0};
 std::atomic<pid_t> g_sender{0};
