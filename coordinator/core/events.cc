@@ -231,6 +231,12 @@ Reactor::Found Engine::TakeEvents(HostDuration timeout, Moment moment, bool is_r
   if (n == 0 && run_.turn.lasts()) {
     if (held || (rearms && is_cut_short)) {
       host_cpu_.active().TakeBack();
+      if (held && run_.gates_only) {
+        // Others of the host may keep the processor from the detector for seconds. That the kernel
+        // has the thread it has said once; whether it still has, /proc says, too.
+        ++run_.turn.held_looks;
+        return {.stops_running = BlockedInKernel()};
+      }
       host_cpu_.detector().Arm();
     } else {
       run_.turn.timed_out = true;
