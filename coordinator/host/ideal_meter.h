@@ -13,8 +13,7 @@ class IdealMeter final : public FixedMeter {
 
   // A thread is found silent after so long, of real time.
   explicit IdealMeter(HostDuration silent_after)
-      : FixedMeter(silent_after),
-        most_looks_(static_cast<int>(silent_after.ns() / kLookEvery.ns())) {}
+      : FixedMeter(silent_after), most_looks_(silent_after.ns() / kLookEvery.ns()) {}
 
   void SetRates(const MeteredThread& thread, const SetCosts&, ClockGrant& grant) const override {
     FixedMeter::SetRates(thread, {.call = {}, .allocation = VirtualDuration()}, grant);
@@ -36,7 +35,7 @@ class IdealMeter final : public FixedMeter {
   void ChargeCall(MeteredThread&, VirtualDuration) override {}
 
  private:
-  int most_looks_;
+  std::int64_t most_looks_;
 };
 
 }  // namespace tcs

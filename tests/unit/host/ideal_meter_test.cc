@@ -41,6 +41,11 @@ TEST_F(IdealMeterTest, EachDispatchHasItsOwnLooks) {
   EXPECT_EQ(LookTimes(kMostLooks - 1), Meter::Found::kGoesOn);
 }
 
+TEST_F(IdealMeterTest, WhoseRunIsPatientForEverIsNeverSilent) {
+  meter_ = IdealMeter(HostDuration::Nanoseconds(INT64_MAX));
+  EXPECT_EQ(LookTimes(10 * kMostLooks), Meter::Found::kGoesOn);
+}
+
 TEST_F(IdealMeterTest, WhoWasFoundSilentIsLookedAtSoon) {
   Dispatch(true);
   EXPECT_EQ(meter_.TimeToLook(thread_, 0, {}), IdealMeter::kLookAgainEvery);
