@@ -89,8 +89,7 @@ void CountCall(GuestThread& thread, Concern concern) {
   if (g_header->gates_only != 0) {
     KeepPorter();
     const bool is_fixed = g_header->accounting == shm::Accounting::kFixed;
-    const bool is_dispatched = thread.slot->clock.horizon_ns != 0;
-    const bool has_to_wait = is_fixed && (concern == Concern::kOthers || !is_dispatched);
+    const bool has_to_wait = is_fixed && (concern == Concern::kOthers || !IsDispatched(thread));
     if (has_to_wait || thread.in_call || IsAtGate(thread) || BeganInUnseenCall(thread)) {
       AwaitTurn(thread);
     }

@@ -84,6 +84,9 @@ inline GuestThread* Current() {
 // Charges a set cost: of a call, or of an allocation.
 void Charge(shm::ClockPage& page, std::int64_t cost_ns);
 
+// Where only its gate holds the thread: false if it runs on though others have their turn.
+inline bool IsDispatched(const GuestThread& thread) { return thread.slot->clock.horizon_ns != 0; }
+
 // Whom an interposed call concerns. One that concerns nobody but its thread neither does anything
 // that others could see nor looks at what they do: it reads a clock.
 enum class Concern { kOthers, kNobody };
