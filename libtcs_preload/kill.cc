@@ -13,29 +13,43 @@
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
+using tcs::shm::kSendsByLibrary;
+using tcs::shm::kSendsItself;
 
 namespace {
 
-// Sending is a write: no handler may run at an earlier time. `receiver` as for kill(2); a `call`
+// As for kill(2); of a thread, if it is known.
+struct Receiver {
+  pid_t process;
+  pid_t thread = 0;
+};
+
+Receiver ReceiverOf(pthread_t thread) {
+  const pid_t tid = TidOf(thread);
+  return {static_cast<pid_t>(RawSyscall(SYS_getpid)), tid > 0 ? tid : 0};
+}
+
+// Sending is a write: no handler may run at an earlier time. A `call`
 // that returns 0 has sent something. A signal of 0 only asks whether somebody is there. Should the
 // thread be stopped between the signal and word of it, the coordinator sees from its slot that
 // there may be one: before it has seen to the receiver nobody else may run.
 template <class Call>
-auto SendSignal(pid_t receiver, int signal, Call call) {
+auto SendSignal(Receiver receiver, int signal, std::uint32_t by, Call call) {
   const Entered t;
   if (t == nullptr || signal == 0) return call();
   HoldForWrite(*t);
-  if (g_header->turns_beside != 0 && receiver != 0 && receiver != RawSyscall(SYS_getpid)) {
-    Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kSignals, .args = {receiver}});
+  const pid_t process = receiver.process;
+  if (g_header->turns_beside != 0 && process != 0 && process != RawSyscall(SYS_getpid)) {
+    Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kSignals, .args = {process}});
   }
   std::atomic<std::uint32_t>& signals = t->slot->signals;
-  signals.fetch_add(1, std::memory_order_relaxed);
+  signals.fetch_add(by, std::memory_order_relaxed);
   const auto result = call();
   if (result == 0) {
     Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kSignalled,
-                         .args = {receiver > 0 ? receiver : 0}});
+                         .args = {process > 0 ? process : 0, receiver.thread, signal}});
   }
-  signals.fetch_sub(1, std::memory_order_relaxed);
+  signals.fetch_sub(by, std::memory_order_relaxed);
   return result;
 }
 
@@ -52,8 +66,8 @@ long SendRaw(long number, Args... args) {
 }  // namespace
 
 TCS_EXPORT int kill(pid_t pid, int signal) noexcept {
-  return static_cast<int>(
-      ToErrno(SendSignal(pid, signal, [&] { return SendRaw(SYS_kill, pid, signal); })));
+  return static_cast<int>(ToErrno(
+      SendSignal({pid}, signal, kSendsItself, [&] { return SendRaw(SYS_kill, pid, signal); })));
 }
 
 TCS_EXPORT int killpg(pid_t group, int signal) noexcept {
@@ -62,20 +76,23 @@ TCS_EXPORT int killpg(pid_t group, int signal) noexcept {
 }
 
 TCS_EXPORT int tgkill(pid_t pid, pid_t tid, int signal) {
-  return static_cast<int>(
-      ToErrno(SendSignal(pid, signal, [&] { return SendRaw(SYS_tgkill, pid, tid, signal); })));
+  return static_cast<int>(ToErrno(SendSignal(
+      {pid, tid}, signal, kSendsItself, [&] { return SendRaw(SYS_tgkill, pid, tid, signal); })));
 }
 
 TCS_EXPORT int sigqueue(pid_t pid, int signal, const sigval value) noexcept {
-  return SendSignal(pid, signal, [&] { return TCS_REAL(sigqueue)(pid, signal, value); });
+  return SendSignal({pid}, signal, kSendsByLibrary,
+                    [&] { return TCS_REAL(sigqueue)(pid, signal, value); });
 }
 
 TCS_EXPORT int pthread_kill(pthread_t thread, int signal) noexcept {
-  return SendSignal(0, signal, [&] { return TCS_REAL(pthread_kill)(thread, signal); });
+  return SendSignal(ReceiverOf(thread), signal, kSendsByLibrary,
+                    [&] { return TCS_REAL(pthread_kill)(thread, signal); });
 }
 
 TCS_EXPORT int pthread_sigqueue(pthread_t thread, int signal, const sigval value) noexcept {
-  return SendSignal(0, signal, [&] { return TCS_REAL(pthread_sigqueue)(thread, signal, value); });
+  return SendSignal(ReceiverOf(thread), signal, kSendsByLibrary,
+                    [&] { return TCS_REAL(pthread_sigqueue)(thread, signal, value); });
 }
 
 // The C library's own signal for this; it sends it only to threads in system calls of its making.
@@ -84,7 +101,7 @@ TCS_EXPORT int pthread_cancel(pthread_t thread) {
   constexpr int kCancelSignal = 32;
   const bool own = pthread_equal(thread, pthread_self()) != 0;
   const pid_t tid = own ? -1 : TidOf(thread);
-  return SendSignal(0, kCancelSignal, [&] {
+  return SendSignal(ReceiverOf(thread), kCancelSignal, kSendsItself, [&] {
     const int error = TCS_REAL(pthread_cancel)(thread);
     if (error == 0 && tid > 0) {
       SendRaw(SYS_tgkill, RawSyscall(SYS_getpid), tid, kCancelSignal);

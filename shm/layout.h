@@ -85,7 +85,8 @@ enum class NotificationKind : std::uint32_t {
   kAffinity = 19,  // args[0]: tid, 0 for the own; args[1]: the robot's cores that it may use, bit 0
                    // for core 0, 0 to ask only; reply[0]: 0, or negative for an errno; reply[1]: as
                    // then set
-  kSignalled = 20,      // the thread has sent a signal to process args[0]; 0: to any
+  kSignalled = 20,  // the thread has sent signal args[2] (0: unknown) to process args[0] (0: any),
+                    // to its thread args[1] (0: to the process)
   kQueueNotifies = 21,  // a message queue will have the kernel send a signal: see queues_notify
   kWaitKey = 22,  // sleep until a kernel object is changed, or deadline_ns; args[0]: a WaitKey,
                   // args[1]: its number, args[2]: 1 to keep the place of the last such wait;
@@ -321,6 +322,11 @@ enum class Saying : std::uint32_t {
   kSaidAndWaits = 3,  // and is to wake the thread in futex(2) when it has
 };
 
+// ThreadSlot::signals: the shim makes the system call, of which nobody else hears; or the C library
+// makes one, which the kernel hands over.
+inline constexpr std::uint32_t kSendsItself = 1;
+inline constexpr std::uint32_t kSendsByLibrary = 1U << 16;
+
 struct alignas(64) ThreadSlot {
   ClockPage clock;
   Notification note;
@@ -336,7 +342,8 @@ struct alignas(64) ThreadSlot {
   std::uint64_t seed;   // of everything the thread draws from the system in deterministic modes
   std::uint32_t patch_vdso;     // 1: calls of the vDSO are to be led to the shim
   std::uint32_t dds_endpoints;  // 1: Cyclone DDS is to use dds_exchange.h instead of sockets
-  // Written by the thread: not 0 while it may have sent a signal and not yet said so (kSignalled).
+  // Written by the thread: not 0 while it may have sent a signal and not yet said so (kSignalled):
+  // how often, each time kSendsItself or kSendsByLibrary.
   std::atomic<std::uint32_t> signals;
   // Written by the thread, emptied by the coordinator when it has stopped.
   std::atomic<std::uint32_t> ipc_count;

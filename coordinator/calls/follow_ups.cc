@@ -23,7 +23,7 @@ void FollowUps::Do(Task& task, Moment call, bool last) {
       shared_events_.PassOn(task, call);
       break;
     case FollowUp::kSignals:
-      signals_.Sent(0, call);
+      signals_.Sent(SentBy(run_, task, task.trapped_call), call);
       break;
     case FollowUp::kKernelWaits:
       objects_.LookAtKernelWaits(call);

@@ -129,7 +129,8 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       parts_.scheduling.Handle(task, note);
       break;
     case Kind::kSignalled:
-      parts_.signals.Sent(ProcessNamed(task, note.args[0]), moment);
+      parts_.signals.Sent(SentBy(run_, task, note), moment);
+      task.sending = {};
       break;
     case Kind::kWaitKey:
       parts_.objects.Wait(task, note, deadline);

@@ -4,6 +4,7 @@
 #include <sys/syscall.h>
 
 #include "coordinator/calls/raw_draws.h"
+#include "coordinator/calls/sent_signal.h"
 #include "coordinator/calls/signal_reach.h"
 #include "coordinator/os/landlock.h"
 #include "shm/clock_ids.h"
@@ -24,7 +25,11 @@ bool IsOfOwner(const TrappedCall& call) {
 // here, too.
 void RawCalls::Signal(Task& task) {
   task.trap_continues = true;
-  if (SlotOf(task).signals.load() != 0) return;
+  if (OnlyAsks(task.trapped_call)) return;
+  if (SlotOf(task).signals.load() != 0) {
+    task.sending = task.trapped_call;
+    return;
+  }
   task.follow_up = FollowUp::kSignals;
   ReachBySignal(run_, task, 0);
   waker_.HoldInCall(task, shm::NotificationKind::kWrite);

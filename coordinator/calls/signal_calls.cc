@@ -32,10 +32,12 @@ bool SignalCalls::Poll() {
   return ended;
 }
 
-void SignalCalls::Sent(pid_t receiver, Moment moment) {
+void SignalCalls::Sent(const SentSignal& signal, Moment moment) {
+  if (signal.is_to_itself && !signal.MayStop()) return;
   for (Process& process : run_.table.processes()) {
-    if (process.dead || (receiver > 0 && process.pid != receiver)) continue;
-    wakes_.WakeForSignals(process, moment);
+    if (process.dead || (signal.pid > 0 && process.pid != signal.pid)) continue;
+    wakes_.WakeForSignal(process, signal, moment);
+    if (!signal.MayStop()) continue;
     stops_.Look(process, moment);
     looked_at_(process, moment.at);
   }

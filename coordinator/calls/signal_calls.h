@@ -32,8 +32,8 @@ class SignalCalls {
         clock_(clock),
         looked_at_(std::move(looked_at)) {}
 
-  // A program has sent a signal to that process; 0: to any process.
-  void Sent(pid_t receiver, Moment moment);
+  // A program has sent a signal.
+  void Sent(const SentSignal& signal, Moment moment);
   // No notification says that a signal has come from outside, so the threads that wait for one are
   // looked at now and then. True if one of them goes on.
   bool Poll();

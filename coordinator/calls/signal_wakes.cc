@@ -23,24 +23,47 @@ bool SignalWakes::EndAwait(Task& task, const SignalSets& sets, Moment moment) {
   return true;
 }
 
+// A thread that waits may have kept the level of its last dispatch. With a signal it would run
+// before its next one, and lose what its call is to return.
+SignalSets SignalWakes::HoldAndAsk(Task& task) {
+  if (!active_.IsLast(task)) active_.Hold(task);
+  return SignalsOf(run_, task);
+}
+
+void SignalWakes::WakeFor(Task& task, const SignalSets& sets, std::uint64_t* taken, Moment moment) {
+  if (EndAwait(task, sets, moment)) return;
+  const std::uint64_t blocked = BlockedOf(task, sets);
+  const std::uint64_t own = Deliverable(sets.own_pending, sets, blocked);
+  std::uint64_t shared = Deliverable(sets.shared_pending & ~*taken, sets, blocked);
+  if (shared != 0 && !IsMarkedForSignal(task.tid)) shared = 0;
+  *taken |= shared;
+  if ((own | shared) == 0) return;
+  if (task.state == TaskState::kWaiting) waker_.Wake(task, shm::WakeReason::kSignal, moment);
+  AnswerAhead(task);
+  undispatched_.SignalCame(task, sets);
+}
+
 void SignalWakes::WakeForSignals(Process& process, Moment moment) {
   std::uint64_t taken = 0;
-  for (Task* thread : run_.table.ThreadsOf(process)) {
-    Task& task = *thread;
-    // A thread that waits may have kept the level of its last dispatch. With a signal it would run
-    // before its next one, and lose what its call is to return.
-    if (!active_.IsLast(task)) active_.Hold(task);
-    const SignalSets sets = SignalsOf(run_, task);
-    if (EndAwait(task, sets, moment)) continue;
-    const std::uint64_t blocked = BlockedOf(task, sets);
-    const std::uint64_t own = Deliverable(sets.own_pending, sets, blocked);
-    std::uint64_t shared = Deliverable(sets.shared_pending & ~taken, sets, blocked);
-    if (shared != 0 && !IsMarkedForSignal(task.tid)) shared = 0;
-    taken |= shared;
-    if ((own | shared) == 0) continue;
-    if (task.state == TaskState::kWaiting) waker_.Wake(task, shm::WakeReason::kSignal, moment);
-    AnswerAhead(task);
-    undispatched_.SignalCame(task, sets);
+  for (Task* task : run_.table.ThreadsOf(process)) {
+    WakeFor(*task, HoldAndAsk(*task), &taken, moment);
+  }
+}
+
+void SignalWakes::WakeForSignal(Process& process, const SentSignal& sent, Moment moment) {
+  Task* receiver = sent.tid == 0 ? nullptr : run_.table.Living(sent.tid);
+  const bool is_known = sent.number > 0 && (sent.tid == 0 || receiver != nullptr) &&
+                        waker_.counts().for_signals() == 0;
+  if (!is_known) return WakeForSignals(process, moment);
+  const std::uint64_t bit = SignalBit(sent.number);
+  std::uint64_t taken = 0;
+  for (Task* task : run_.table.ThreadsOf(process)) {
+    if (receiver != nullptr && task != receiver) continue;
+    const SignalSets sets = HoldAndAsk(*task);
+    if ((sets.caught & bit) == 0) return WakeForSignals(process, moment);  // it may end the process
+    WakeFor(*task, sets, &taken, moment);
+    const bool is_there_to_take = (sets.shared_pending & ~taken & bit) != 0;
+    if (receiver != nullptr || !is_there_to_take) return;
   }
 }
 

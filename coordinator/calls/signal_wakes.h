@@ -5,6 +5,7 @@
 // For the coordinator's thread only.
 #pragma once
 
+#include "coordinator/calls/sent_signal.h"
 #include "coordinator/host/active_threads.h"
 #include "coordinator/os/host.h"
 #include "coordinator/processes/undispatched_threads.h"
@@ -23,11 +24,18 @@ class SignalWakes {
   // The kernel has chosen the thread that handles a signal for the whole process, and has woken it.
   // A thread that sleeps on goes on waiting, whatever is pending.
   void WakeForSignals(Process& process, Moment moment);
+  // The same where no other signal can have come to the process. What has a handler reaches one
+  // thread: others are not asked.
+  void WakeForSignal(Process& process, const SentSignal& sent, Moment moment);
   // Without levels the kernel keeps a signal from a thread whose call is trapped (os/trap.cc), so
   // only a look finds one that came from outside. One from inside is told by its sender.
   bool HasSignalForTrapped(Task& task) const;
 
  private:
+  // What the thread knows of signals, once it can act on none before its next dispatch.
+  SignalSets HoldAndAsk(Task& task);
+  // Of signals for the whole process it takes none of `taken`. Adds those that it takes.
+  void WakeFor(Task& task, const SignalSets& sets, std::uint64_t* taken, Moment moment);
   void AnswerAhead(Task& task);
 
   RunState& run_;

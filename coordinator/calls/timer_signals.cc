@@ -53,15 +53,22 @@ pid_t TimerSignals::AccepterOf(const Process& process, const TimerSignal& signal
   return 0;
 }
 
-// Null if nobody runs a handler, or only one that the kernel holds in a call.
+// Null if nobody runs a handler, or only one that the kernel holds in a call. The kernel, too,
+// gives what has run out by computing to the thread that computes, before it asks others: whoever
+// has a lower priority might never come to its handler.
 Task* TimerSignals::TakerOf(const Process& process, const TimerSignal& signal) const {
+  Task* computed = signal.tid == 0 ? run_.table.Living(signal.computed) : nullptr;
+  const auto handles = [&](Task* task) {
+    return task != nullptr && task->slot >= 0 &&
+           Handles(*task, SignalsOf(run_, *task), signal.number);
+  };
+  Task* taker = handles(computed) ? computed : nullptr;
   for (Task* task : process.robot->tasks) {
-    if (task->process != &process || task->slot < 0) continue;
-    if (signal.tid != 0 && task->tid != signal.tid) continue;
-    if (Handles(*task, SignalsOf(run_, *task), signal.number))
-      return task->state == TaskState::kUnseen ? nullptr : task;
+    if (taker != nullptr) break;
+    if (task->process != &process || (signal.tid != 0 && task->tid != signal.tid)) continue;
+    if (handles(task)) taker = task;
   }
-  return nullptr;
+  return taker == nullptr || taker->state == TaskState::kUnseen ? nullptr : taker;
 }
 
 void TimerSignals::Route(Process& process, Moment moment) {

@@ -475,10 +475,18 @@ void Engine::TellOthersOf(Task& task, Moment call, bool looks_again) {
   if (!run_.turn.HasSpoken()) spawns_.TurnEnds(task, stop);
   task.process->timers.EndRests(stop.at);
   if (run_.turn.HasSpoken()) shared_events_.PassOn(task, stop);
-  // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
-  // the level of its last dispatch, beside whoever is next.
-  if (!run_.turn.notified && task.slot >= 0 && SlotOf(task).signals.load() != 0)
-    signals_.Sent(0, stop);
+  if (!run_.turn.notified && task.slot >= 0) LookForUntoldSignals(task, stop);
+}
+
+// It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
+// the level of its last dispatch, beside whoever is next.
+void Engine::LookForUntoldSignals(const Task& task, Moment stop) {
+  const std::uint32_t sends = SlotOf(task).signals.load();
+  if (sends == 0) return;
+  const bool by_library = sends == shm::kSendsByLibrary;
+  // Not yet: here is the call.
+  if (by_library && run_.turn.trapped.has_value() && SendsSignal(*run_.turn.trapped)) return;
+  signals_.Sent(by_library ? SentBy(run_, task, task.sending) : SentSignal(), stop);
 }
 
 // What the thread has said at the end of its turn.

@@ -166,6 +166,7 @@ class Engine {
   static void NoteTurnBegins(Task& task);
   void EndTurn(Task& task);
   void TellOthersOf(Task& task, Moment call, bool looks_again);
+  void LookForUntoldSignals(const Task& task, Moment stop);
   void Answer(Task& task);
   void GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const;
   std::int64_t ChargedUndispatched(const Task& task) const;
@@ -322,7 +323,7 @@ class Engine {
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{run_.table, reactor_, unmanaged_};
   Grace grace_{run_, reactor_, unknown_children_,
-               [this](Moment moment) { signals_.Sent(0, moment); }};
+               [this](Moment moment) { signals_.Sent({}, moment); }};
 
   Spawns spawns_{run_,
                  {*executor_, births_, registration_, scheduling_, bare_programs_,

@@ -213,7 +213,7 @@ std::vector<ProcessTimers::RanOut> ProcessTimers::ExpireCpu(const CpuUsed& used)
     const std::int64_t count = clock.has_value() ? timer.TakeExpirations(clock->ns()) : 0;
     if (count == 0) continue;
     timer.seen_ns = clock->ns();
-    Signal(id, timer, count);
+    Signal(id, timer, count, used.tid);
     ran_out.push_back({id, count, std::nullopt, timer.setting.interval_ns > 0});
   }
   FindNext();
@@ -237,14 +237,14 @@ VirtualTime ProcessTimers::NextLook() const {
   return next;
 }
 
-void ProcessTimers::Signal(Id id, Timer& timer, std::int64_t count) {
+void ProcessTimers::Signal(Id id, Timer& timer, std::int64_t count, pid_t computed) {
   if (timer.kind.signal == 0) return;
   if (timer.kind.is_posix == 0) {
     // Such signals are not counted.
     const bool is_underway = std::ranges::any_of(signals_, [&](const TimerSignal& signal) {
       return signal.timer_id == 0 && signal.number == timer.kind.signal;
     });
-    if (!is_underway) signals_.push_back({.number = timer.kind.signal});
+    if (!is_underway) signals_.push_back({.number = timer.kind.signal, .computed = computed});
     return;
   }
   if (timer.is_signal_underway) return timer.AddOverruns(count);
@@ -255,7 +255,8 @@ void ProcessTimers::Signal(Id id, Timer& timer, std::int64_t count) {
                       .tid = timer.kind.signal_tid,
                       .timer_id = id,
                       .value = timer.kind.value,
-                      .overruns = timer.overruns});
+                      .overruns = timer.overruns,
+                      .computed = computed});
 }
 
 std::vector<TimerSignal> ProcessTimers::TakeSignals() { return std::exchange(signals_, {}); }

@@ -43,7 +43,8 @@ struct TimerSignal {
   pid_t tid = 0;              // 0: to the process
   std::int64_t timer_id = 0;  // 0: setitimer's
   std::int64_t value = 0, overruns = 0;
-  pid_t taker = 0;  // the thread that will run its handler: sent at its next dispatch
+  pid_t computed = 0;  // on processor time: the thread by which it has run out
+  pid_t taker = 0;     // the thread that will run its handler: sent at its next dispatch
 };
 
 class ProcessTimers {
@@ -167,7 +168,7 @@ class ProcessTimers {
   const Timer* Find(Id id) const;
   Timer* Find(Id id);
   bool IsUnsent(Id id) const;
-  void Signal(Id id, Timer& timer, std::int64_t count);
+  void Signal(Id id, Timer& timer, std::int64_t count, pid_t computed = 0);
   void FindNext(VirtualTime earliest = {});
 
   std::map<Id, Timer> timers_;

@@ -110,6 +110,8 @@ struct Task : HostThread {
   bool expects_kernel = false;            // in its next call the kernel may hold it
   TrappedCall unanswered_call;            // the last that it stopped in,
   TrappedCall trapped_call;               // and the last but futex calls
+  TrappedCall sending;                    // by which the C library sends a signal for it, until its
+                                          // shim says that it is sent; number 0: none
   std::uint64_t end_word = 0;             // the kernel clears it at the thread's end; 0: unknown
   // The priority-inheriting lock that has been handed to it, and it does not know yet; 0: none.
   std::uint64_t handed_lock = 0;

@@ -3,6 +3,9 @@
 #include <signal.h>
 #include <sys/time.h>
 
+#include <atomic>
+#include <thread>
+
 #include "tests/conformance/conformance.h"
 
 using namespace conformance;
@@ -113,6 +116,27 @@ void OnProcessorTime(int which, int signal_number) {
   EXPECT(used >= 40 * kMs && used < 500 * kMs, "timer %d after %lld ns", which, (long long)used);
 }
 
+std::atomic<pid_t> g_handler_ran_in{0};
+
+// The thread that computes runs the handler, though the first thread, which waits, does not block
+// the signal either, and had it to wait for a turn.
+void InWhoComputes(int which, int signal_number) {
+  signal(signal_number, [](int) { g_handler_ran_in = gettid(); });
+  g_handler_ran_in = 0;
+  std::atomic<pid_t> computes{0};
+  std::thread worker([&] {
+    computes = gettid();
+    const itimerval timer = Every(20 * kMs, 0);
+    EXPECT(setitimer(which, &timer, nullptr) == 0, "setitimer %d", which);
+    const std::int64_t cpu = Now(CLOCK_THREAD_CPUTIME_ID);
+    while (g_handler_ran_in == 0 && Now(CLOCK_THREAD_CPUTIME_ID) - cpu < kSecond) {
+    }
+  });
+  worker.join();
+  EXPECT(g_handler_ran_in == computes, "timer %d: %d ran the handler instead of %d", which,
+         int(g_handler_ran_in), int(computes));
+}
+
 }  // namespace
 
 // An interval that ends after all time runs out once, and stays set.
@@ -135,6 +159,8 @@ int main(int argc, char** argv) {
   Microseconds();
   OnProcessorTime(ITIMER_VIRTUAL, SIGVTALRM);
   OnProcessorTime(ITIMER_PROF, SIGPROF);
+  InWhoComputes(ITIMER_VIRTUAL, SIGVTALRM);
+  InWhoComputes(ITIMER_PROF, SIGPROF);
   BeyondAllTime();
   const itimerval bad{{0, 0}, {0, 1'000'000}};
   EXPECT(setitimer(ITIMER_REAL, &bad, nullptr) == -1 && errno == EINVAL, "a bad time was taken");

@@ -7,7 +7,10 @@
 #include <sys/socket.h>
 #include <sys/wait.h>
 
+#include <atomic>
 #include <functional>
+#include <thread>
+#include <vector>
 
 #include "tests/conformance/conformance.h"
 
@@ -218,6 +221,70 @@ void Stops() {
   EXPECT(waitpid(child, &status, 0) == child && WTERMSIG(status) == SIGKILL, "%x", status);
 }
 
+// Which thread of `threads` ends its sleep at once, -1 if none does within 30 ms. Thread `taker`
+// does not block SIGUSR2; the others do. `waiter` waits for it by sigwait.
+int WhoTakes(int taker, int waiter,
+             const std::function<void(const std::vector<pthread_t>&)>& send) {
+  constexpr int kThreads = 4;
+  std::atomic<int> who{-1};
+  std::atomic<bool> sent{false};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < kThreads; ++i) {
+    threads.emplace_back([&, i] {
+      sigset_t set;
+      sigemptyset(&set);
+      sigaddset(&set, SIGUSR2);
+      pthread_sigmask(i == taker ? SIG_UNBLOCK : SIG_BLOCK, &set, nullptr);
+      const timespec long_enough{0, 80 * kMs};
+      const int result = i == waiter ? sigtimedwait(&set, nullptr, &long_enough)
+                                     : nanosleep(&long_enough, nullptr);
+      if (i == waiter ? result == SIGUSR2 : result == -1) who = i;
+      EXPECT(sent, "a wait of 80 ms was over in 20");
+    });
+  }
+  usleep(20'000);
+  sent = true;
+  std::vector<pthread_t> handles;
+  for (std::thread& thread : threads) handles.push_back(thread.native_handle());
+  send(handles);
+  usleep(30'000);
+  const int taken_by = who;
+  for (std::thread& thread : threads) thread.join();
+  return taken_by;
+}
+
+// Of several threads the one that does not block it, wherever it stands; one that waits for it; and
+// no other than that which is named.
+void AmongThreads() {
+  HandleWith(SIGUSR2, 0);
+  sigset_t set, before;
+  sigemptyset(&set);
+  sigaddset(&set, SIGUSR2);
+  pthread_sigmask(SIG_BLOCK, &set, &before);
+  const auto to_process = [](const std::vector<pthread_t>&) { kill(getpid(), SIGUSR2); };
+  for (int taker = 0; taker < 4; ++taker) {
+    const int who = WhoTakes(taker, -1, to_process);
+    EXPECT(who == taker, "kill: thread %d instead of %d", who, taker);
+  }
+  const int waiter = WhoTakes(-1, 2, to_process);
+  EXPECT(waiter == 2, "kill: thread %d waited for it instead of 2", waiter);
+  for (int taker = 0; taker < 4; taker += 3) {
+    const int who = WhoTakes(taker, -1, [taker](const std::vector<pthread_t>& threads) {
+      EXPECT(pthread_kill(threads[std::size_t(taker)], SIGUSR2) == 0, "pthread_kill");
+    });
+    EXPECT(who == taker, "pthread_kill: thread %d instead of %d", who, taker);
+  }
+  const int blocked = WhoTakes(1, -1, [](const std::vector<pthread_t>& threads) {
+    EXPECT(pthread_kill(threads[3], SIGUSR2) == 0, "pthread_kill");
+  });
+  EXPECT(blocked == -1, "pthread_kill of a thread that blocks it: %d took it", blocked);
+  const int by_value = WhoTakes(2, -1, [](const std::vector<pthread_t>&) {
+    EXPECT(sigqueue(getpid(), SIGUSR2, {.sival_int = 3}) == 0, "sigqueue");
+  });
+  EXPECT(by_value == 2, "sigqueue: thread %d instead of 2", by_value);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -228,4 +295,5 @@ int main(int argc, char** argv) {
   Values();
   EndsOfProcesses();
   Stops();
+  AmongThreads();
 }

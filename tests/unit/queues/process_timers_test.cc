@@ -328,7 +328,10 @@ TEST_F(ProcessTimersTest, OnProcessorTimeOfTheProcessAllThreadsCount) {
   ASSERT_EQ(ran_out.size(), 1u);
   EXPECT_EQ(ran_out[0].id, id);
   EXPECT_EQ(ran_out[0].count, 3);
-  EXPECT_EQ(timers_.TakeSignals().at(0).overruns, 2);
+  const std::vector<TimerSignal> signals = timers_.TakeSignals();
+  ASSERT_EQ(signals.size(), 1u);
+  EXPECT_EQ(signals[0].overruns, 2);
+  EXPECT_EQ(signals[0].computed, kThread);
   EXPECT_EQ(timers_.CpuTimeToExpiry({VirtualNs(35 * kMs), kThread, VirtualNs(kMs)}),
             VirtualNs(5 * kMs));
   // Time that passes does not concern it.
