@@ -12,7 +12,9 @@ namespace tcs {
 bool SignalCalls::Poll() {
   const bool awaited =
       run_.gates_only || waker_.counts().for_signals() > 0 || waker_.counts().for_stops() > 0;
-  if (!awaited || __rdtsc() < next_look_tsc_) return false;
+  // The call in which the kernel holds a thread may be what has it send one: to the holder of a
+  // lease, say, for whom the thread waits.
+  if (!awaited || (__rdtsc() < next_look_tsc_ && waker_.unseen() == 0)) return false;
   next_look_tsc_ = __rdtsc() + clock_.TicksIn(kLookEvery.ns());
   bool ended = false;
   const VirtualTime now = run_.turn.lasts() ? run_.WrittenAt() : run_.latest;

@@ -126,6 +126,41 @@ void Inheritance() {
   EXPECT(pthread_join(thread, nullptr) == 0, "pthread_join");
 }
 
+// The kernel has the child wait until the parent, to whom it sends a signal, gives up its lease: at
+// once by the clocks of both, though the parent would wait for five seconds.
+void Leases() {
+  const std::string path = g_folder + "/leased";
+  const int fd = open(path.c_str(), O_RDWR | O_CREAT, 0600);
+  sigset_t set, before;
+  sigemptyset(&set);
+  sigaddset(&set, SIGIO);
+  sigprocmask(SIG_BLOCK, &set, &before);
+  if (fcntl(fd, F_SETLEASE, F_WRLCK) == 0) {  // not every file system has leases
+    for (int i = 0; i < 3; ++i) {
+      const pid_t child = fork();
+      if (child == 0) {
+        usleep(50'000);
+        const std::int64_t start = Now();
+        const int own = open(path.c_str(), O_WRONLY);
+        _exit(own >= 0 && Now() - start < kSecond ? 0 : 1);
+      }
+      const std::int64_t start = Now();
+      const timespec most{5, 0};
+      EXPECT(sigtimedwait(&set, nullptr, &most) == SIGIO, "no word of a lease: %s",
+             strerror(errno));
+      const std::int64_t waited = Now() - start;
+      EXPECT(waited >= 50 * kMs && waited < kSecond, "%lld ns", (long long)waited);
+      EXPECT(fcntl(fd, F_SETLEASE, F_UNLCK) == 0, "lease: %s", strerror(errno));
+      int status = 0;
+      EXPECT(waitpid(child, &status, 0) == child && status == 0, "lease: child status %x", status);
+      EXPECT(fcntl(fd, F_SETLEASE, F_WRLCK) == 0, "lease: %s", strerror(errno));
+    }
+  }
+  sigprocmask(SIG_SETMASK, &before, nullptr);
+  close(fd);
+  unlink(path.c_str());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -138,6 +173,7 @@ int main(int argc, char** argv) {
   Queues();
   Inheritance();
   Clones();
+  Leases();
   unlink((g_folder + "/fifo").c_str());
   unlink((g_folder + "/file").c_str());
   rmdir(folder);
