@@ -181,10 +181,14 @@ TCS_EXPORT int timer_settime(timer_t name, int flags, const itimerspec* __restri
   if (!IsValid(value)) return Fail(EINVAL);
   if (timer == nullptr) return Fail(EINVAL);
   const std::int64_t now = NowOn(*t, *timer);
+  const bool is_absolute = (flags & TIMER_ABSTIME) != 0;
+  const bool is_date =
+      is_absolute && tcs::shm::ClockOf(timer->clock).kind == tcs::shm::ClockKind::kRealtime;
   const std::int64_t first =
-      FirstExpiry(ToNs(value.it_value), (flags & TIMER_ABSTIME) != 0, now, OffsetOf(timer->clock));
-  const Reply before = Exchange(*t, Request{.kind = NotificationKind::kTimerSet,
-                                            .args = {timer->id, first, ToNs(value.it_interval)}});
+      FirstExpiry(ToNs(value.it_value), is_absolute, now, OffsetOf(timer->clock));
+  const Reply before =
+      Exchange(*t, Request{.kind = NotificationKind::kTimerSet,
+                           .args = {timer->id, first, ToNs(value.it_interval), is_date ? 1 : 0}});
   return old == nullptr || CopyOut(old, ToSpec(before, now)) ? 0 : Fail(EFAULT);
 }
 

@@ -51,8 +51,9 @@ int ClockNanosleep(clockid_t id, int flags, const timespec* given, timespec* rem
   const std::int64_t request_ns = ToNs(request);
   if ((flags & TIMER_ABSTIME) != 0) {
     const bool is_real = tcs::shm::ClockOf(id).kind == ClockKind::kRealtime;
-    const std::int64_t offset_ns = OffsetNs(is_real ? Clock::kRealtime : Clock::kMonotonic);
-    return SleepUntil(*t, request_ns - offset_ns) ? 0 : EINTR;
+    const bool is_over = is_real ? SleepUntilDate(*t, request_ns)
+                                 : SleepUntil(*t, request_ns - OffsetNs(Clock::kMonotonic));
+    return is_over ? 0 : EINTR;
   }
   std::int64_t remaining = 0;
   const int error = SleepFor(*t, request_ns, &remaining);

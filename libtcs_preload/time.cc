@@ -39,7 +39,24 @@ std::int64_t ReadClock(GuestThread& t, const ClockOfId& clock) {
   }
 }
 
-int SetClockRefused(GuestThread* t) { return t == nullptr ? 0 : Fail(EPERM); }
+// The date from now on; 0, or -1 with errno.
+int SetDate(GuestThread& t, std::int64_t date_ns) {
+  HoldForWrite(t);
+  const Reply reply =
+      Exchange(t, Request{.kind = tcs::shm::NotificationKind::kSetDate, .args = {date_ns}});
+  return reply.values[0] == 0 ? 0 : Fail(static_cast<int>(-reply.values[0]));
+}
+
+// By adjtimex: a step is all that a clock which nothing disciplines can be told.
+int StepDate(GuestThread& t, const timex& step) {
+  constexpr unsigned kNanoseconds = ADJ_NANO;
+  if ((step.modes & ~(ADJ_SETOFFSET | kNanoseconds)) != 0) return Fail(EPERM);
+  const std::int64_t most = (step.modes & kNanoseconds) != 0 ? kNsPerSecond : 1'000'000;
+  if (step.time.tv_usec < 0 || step.time.tv_usec >= most) return Fail(EINVAL);
+  const std::int64_t fraction = step.time.tv_usec * (kNsPerSecond / most);
+  const std::int64_t now = NowNs(t) + OffsetNs(Clock::kRealtime);
+  return SetDate(t, AddSaturated(now, AddSaturated(ToNs(timespec{step.time.tv_sec, 0}), fraction)));
+}
 
 }  // namespace
 
@@ -162,18 +179,22 @@ TCS_EXPORT int __clock_getres(clockid_t id, timespec* resolution) {
 
 TCS_EXPORT int clock_settime(clockid_t id, const timespec* ts) {
   const Entered t;
-  if (t != nullptr && (id != CLOCK_REALTIME || !IsValid(*ts))) return Fail(EINVAL);
-  if (SetClockRefused(t) != 0) return -1;
-  return static_cast<int>(ToErrno(RawSyscall(SYS_clock_settime, id, Arg(ts))));
+  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_clock_settime, id, Arg(ts))));
+  if (id != CLOCK_REALTIME) return Fail(EINVAL);
+  timespec date;
+  if (!CopyIn(&date, ts)) return Fail(EFAULT);
+  return IsValid(date) ? SetDate(*t, ToNs(date)) : Fail(EINVAL);
 }
 
 TCS_EXPORT int settimeofday(const timeval* tv, const struct timezone* zone) {
   const Entered t;
-  if (t != nullptr && tv != nullptr && (zone != nullptr || !IsValid(*tv))) {
-    return Fail(EINVAL);
+  if (t == nullptr) {
+    return static_cast<int>(ToErrno(RawSyscall(SYS_settimeofday, Arg(tv), Arg(zone))));
   }
-  if (SetClockRefused(t) != 0) return -1;
-  return static_cast<int>(ToErrno(RawSyscall(SYS_settimeofday, Arg(tv), Arg(zone))));
+  if (tv == nullptr) return Fail(EPERM);  // the time zone is the host's
+  timeval date;
+  if (!CopyIn(&date, tv)) return Fail(EFAULT);
+  return zone == nullptr && IsValid(date) ? SetDate(*t, ToNs(date)) : Fail(EINVAL);
 }
 
 // The headers have forgotten it, older programs have not.
@@ -183,13 +204,17 @@ TCS_EXPORT int SetTime(const time_t* seconds) {
   return clock_settime(CLOCK_REALTIME, &ts);
 }
 
-// Reading the adjustment is allowed, with the virtual time in it; changing it is not.
+// The adjustment can be read, with the virtual time in it, and the date be set by a step.
 TCS_EXPORT int adjtimex(timex* tx) {
   const Entered t;
   if (!CanRead(tx, sizeof *tx)) return Fail(EFAULT);
-  if (t != nullptr && tx->modes != 0) return Fail(EPERM);
+  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_adjtimex, Arg(tx))));
+  const unsigned modes = tx->modes;
+  if (modes != 0 && StepDate(*t, *tx) != 0) return -1;
+  tx->modes = 0;  // the host's clock is only read
   const long state = RawSyscall(SYS_adjtimex, Arg(tx));
-  if (t != nullptr && state >= 0) {
+  tx->modes = modes;
+  if (state >= 0) {
     const timespec now = ToTimespec(NowNs(*t) + OffsetNs(Clock::kRealtime));
     tx->time = timeval{now.tv_sec, (tx->status & STA_NANO) != 0 ? now.tv_nsec : now.tv_nsec / 1000};
     tx->freq = tx->offset = 0;

@@ -33,8 +33,9 @@ struct TimerValue {
 };
 
 TimerValue Ask(GuestThread& t, NotificationKind kind, std::int64_t id, std::int64_t first,
-               std::int64_t interval) {
-  const Reply reply = Exchange(t, Request{.kind = kind, .args = {id, first, interval}});
+               std::int64_t interval, bool is_date = false) {
+  const Reply reply =
+      Exchange(t, Request{.kind = kind, .args = {id, first, interval, is_date ? 1 : 0}});
   return TimerValue{reply.values[0], reply.values[1]};
 }
 
@@ -131,11 +132,13 @@ TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* given, itime
   if ((flags & ~(TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET)) != 0) return Fail(EINVAL);
   if (!IsValid(value)) return Fail(EINVAL);
   const std::int64_t now = NowNs(*t);
-  const std::int64_t first = FirstExpiry(ToNs(value.it_value), (flags & TFD_TIMER_ABSTIME) != 0,
-                                         now, OffsetNs(timer->clock));
+  const bool is_absolute = (flags & TFD_TIMER_ABSTIME) != 0;
+  const std::int64_t first =
+      FirstExpiry(ToNs(value.it_value), is_absolute, now, OffsetNs(timer->clock));
   const std::int64_t interval = ToNs(value.it_interval);
   NoteShortTimer(timer->id, interval > 0 && interval < tcs::shm::kShortIntervalNs);
-  const TimerValue before = Ask(*t, NotificationKind::kTimerSet, timer->id, first, interval);
+  const TimerValue before = Ask(*t, NotificationKind::kTimerSet, timer->id, first, interval,
+                                is_absolute && timer->clock == Clock::kRealtime);
   if (old == nullptr) return 0;
   return CopyOut(old, ToSpec<itimerspec>(before, now, ToTimespec)) ? 0 : Fail(EFAULT);
 }

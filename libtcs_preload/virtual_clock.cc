@@ -66,11 +66,9 @@ std::int64_t ProcessCpuNs(GuestThread& thread) {
 
 std::int64_t ChildrenCpuNs(const GuestThread& thread) { return thread.slot->clock.children_cpu_ns; }
 
-bool SleepUntil(GuestThread& thread, std::int64_t deadline_ns) {
-  return SleepUntil(thread, ReadChecked(thread.slot->clock), deadline_ns);
-}
+namespace {
 
-bool SleepUntil(GuestThread& thread, const ClockReading& now, std::int64_t deadline_ns) {
+bool Sleep(GuestThread& thread, const ClockReading& now, std::int64_t deadline_ns, bool is_date) {
   if (IsShutDown()) {
     // The clock stands still; a program that sleeps until it is told to end must not spin.
     const timespec turn{0, 10'000'000};
@@ -80,10 +78,26 @@ bool SleepUntil(GuestThread& thread, const ClockReading& now, std::int64_t deadl
     NoteSlept(thread, now.time_ns, now.cpu_ns, deadline_ns);
     return true;
   }
-  const Reply reply = Exchange(
-      thread,
-      Request{.kind = NotificationKind::kIdle, .deadline_ns = deadline_ns, .interruptible = true});
+  const Reply reply = Exchange(thread, Request{.kind = NotificationKind::kIdle,
+                                               .deadline_ns = deadline_ns,
+                                               .args = {0, 0, is_date ? 1 : 0},
+                                               .interruptible = true});
   return reply.reason != shm::WakeReason::kSignal;
+}
+
+}  // namespace
+
+bool SleepUntil(GuestThread& thread, std::int64_t deadline_ns) {
+  return SleepUntil(thread, ReadChecked(thread.slot->clock), deadline_ns);
+}
+
+bool SleepUntil(GuestThread& thread, const ClockReading& now, std::int64_t deadline_ns) {
+  return Sleep(thread, now, deadline_ns, false);
+}
+
+bool SleepUntilDate(GuestThread& thread, std::int64_t date_ns) {
+  return Sleep(thread, ReadChecked(thread.slot->clock),
+               AddSaturated(date_ns, -OffsetNs(Clock::kRealtime)), true);
 }
 
 std::int64_t DeadlineAfter(GuestThread& thread, std::int64_t timeout_ns) {

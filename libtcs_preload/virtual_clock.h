@@ -51,12 +51,15 @@ std::int64_t ProcessCpuNs(GuestThread& thread);
 std::int64_t ChildrenCpuNs(const GuestThread& thread);
 
 inline std::int64_t OffsetNs(Clock clock) {
-  return clock == Clock::kMonotonic ? g_header->monotonic_offset_ns : g_header->realtime_offset_ns;
+  return clock == Clock::kMonotonic ? g_header->monotonic_offset_ns
+                                    : g_header->realtime_offset_ns.load(std::memory_order_relaxed);
 }
 
 // Sleeps until `deadline_ns`; false if a signal handler ended the sleep before. The second form
 // spares a reading where the caller has just made one.
 bool SleepUntil(GuestThread& thread, std::int64_t deadline_ns);
+// The same until CLOCK_REALTIME shows `date_ns`, also where it is set meanwhile.
+bool SleepUntilDate(GuestThread& thread, std::int64_t date_ns);
 bool SleepUntil(GuestThread& thread, const shm::ClockReading& now, std::int64_t deadline_ns);
 
 // `timeout_ns` from now; never for a negative one.

@@ -37,7 +37,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 27;
+inline constexpr std::uint32_t kVersion = 28;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -52,7 +52,8 @@ enum class NotificationKind : std::uint32_t {
   kRead = 2,       // go on once nothing can be produced before time_ns any more
   kWrite = 3,      // go on once no thread can still read before time_ns
   kIdle = 4,       // sleep until deadline_ns; args[0]: 1 if with the signal mask args[1];
-                   // 2 if also until a signal of the set args[1] is pending
+                   // 2 if also until a signal of the set args[1] is pending; args[2]: 1 if
+                   // deadline_ns is that of a date (kSetDate)
   kWaitFds = 5,    // sleep until one of fds is ready, a signal of the set args[1] is pending, or
                    // deadline_ns; args[0]: 1 if one event of the one descriptor is for one waiter,
                    // the first of several that came, 2 if for the last;
@@ -62,11 +63,11 @@ enum class NotificationKind : std::uint32_t {
   kPassOn = 32,    // the thread has taken what it was woken for
   kWaitChild = 6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or also, if
                    // args[1] is not 0, until one stops or goes on; or deadline_ns
-  kTimerCreate = 7,  // args[0]: a timerfd that the coordinator makes readable, or -1; args[1] to
-                     // args[3]: TimerKind; reply[0]: timer id
-  kTimerSet = 8,  // args[0]: timer id, args[1]: first expiry (0 disarms), args[2]: interval; reply:
-                  // as kTimerGet
-  kTimerGet = 9,  // args[0]: timer id; reply[0]: next expiry or 0, reply[1]: interval
+  kTimerCreate = 7,   // args[0]: a timerfd that the coordinator makes readable, or -1; args[1] to
+                      // args[3]: TimerKind; reply[0]: timer id
+  kTimerSet = 8,      // args[0]: timer id, args[1]: first expiry (0 disarms), args[2]: interval,
+                      // args[3]: 1 if args[1] is that of a date; reply: as kTimerGet
+  kTimerGet = 9,      // args[0]: timer id; reply[0]: next expiry or 0, reply[1]: interval
   kTimerDelete = 10,  // args[0]: timer id
   kSpawned = 11,      // args[0]: pid of a new child that will attach (ThreadSlot::announces)
   kYield = 12,        // let equals run; args[0]: 1 if the thread spins, as with kSpins
@@ -122,6 +123,7 @@ enum class NotificationKind : std::uint32_t {
   kChildUsage = 38,    // args[0]: pid of a child that has ended; reply[0]: what it and its own
                        // children were charged, ns; -1: not known
   kSpins = 41,         // the thread looks at memory again and again (ThreadSlot::spin)
+  kSetDate = 42,       // CLOCK_REALTIME shows args[0] now; reply[0]: 0, or negative for an errno
   kOutside = 40,  // of a file by which the program may meet what is outside of the run; args: an
                   // OutsideEvent, and what it says (outside_files.h)
 };
@@ -412,7 +414,8 @@ struct alignas(64) RunHeader {
   Accounting accounting;
   std::atomic<std::uint32_t> shutdown;  // 1: the run is over; the shim lets every call through
   std::int64_t monotonic_offset_ns;     // CLOCK_MONOTONIC minus virtual time; never 0
-  std::int64_t realtime_offset_ns;      // CLOCK_REALTIME minus virtual time; never 0
+  // CLOCK_REALTIME minus virtual time; never 0. Changes when a program sets the date.
+  std::atomic<std::int64_t> realtime_offset_ns;
   std::int32_t coordinator_pid;
   Sync sync;
   std::atomic<std::uint32_t> queues_notify;  // 1: a send to a message queue may send a signal

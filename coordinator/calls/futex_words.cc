@@ -40,6 +40,11 @@ FutexKey FutexWords::WokenKeyFor(const Process& process, const TrappedCall& call
   return KeyOf(process.pid, address, is_private || !table_.MayBeWaitedAt(address));
 }
 
+bool FutexWords::IsDate(const TrappedCall& call, int command) {
+  return command == FUTEX_LOCK_PI ||
+         (command != FUTEX_WAIT && (call.args[1] & FUTEX_CLOCK_REALTIME) != 0);
+}
+
 std::int64_t FutexWords::Deadline(const Task& task, const TrappedCall& call, int command,
                                   const timespec& timeout, VirtualTime* deadline) {
   *deadline = VirtualTime::Never();
@@ -52,9 +57,8 @@ std::int64_t FutexWords::Deadline(const Task& task, const TrappedCall& call, int
     *deadline = now + VirtualNs(ns);
     return 0;
   }
-  const bool realtime = command == FUTEX_LOCK_PI || (call.args[1] & FUTEX_CLOCK_REALTIME) != 0;
-  const std::int64_t offset =
-      realtime ? run_.header->realtime_offset_ns : run_.header->monotonic_offset_ns;
+  const std::int64_t offset = IsDate(call, command) ? run_.header->realtime_offset_ns.load()
+                                                    : run_.header->monotonic_offset_ns;
   *deadline = std::max(now, task.process->clock.RobotTimeOf(OwnTime(ns - offset)));
   return 0;
 }
@@ -105,12 +109,14 @@ std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) 
   const auto holds = static_cast<pid_t>(value & FUTEX_TID_MASK);
   if (joined == nullptr) joined = run_.table.Named(*task.process, holds);
   const pid_t names = joined == nullptr ? 0 : joined->tid;
-  Enter(task, {.names_tid = names, .address = call.args[0], .holds = holds}, deadline);
+  Enter(task, {.names_tid = names, .address = call.args[0], .holds = holds}, deadline,
+        IsDate(call, command));
   return 0;
 }
 
-void FutexWords::Enter(Task& task, awaited::Futex wait, VirtualTime deadline) {
-  waker_.Wait(task, {wait, deadline, true});
+void FutexWords::Enter(Task& task, awaited::Futex wait, VirtualTime deadline, bool is_date) {
+  waker_.Wait(task,
+              {.what = wait, .deadline = deadline, .is_in_trapped_call = true, .is_date = is_date});
 }
 
 // The joiner finds the word as it was: whether the kernel has cleared it is seen when it waits
@@ -155,7 +161,7 @@ std::int64_t FutexWords::WaitForAny(Task& task, const TrappedCall& call) {
     keys.push_back(KeyOf(pid, word.address, (word.flags & FUTEX_PRIVATE_FLAG) != 0));
   }
   table_.WaitForAny(task.order, std::move(keys), kAnyBit);
-  Enter(task, {}, deadline);
+  Enter(task, {}, deadline, call.args[4] == CLOCK_REALTIME);
   return 0;
 }
 

@@ -28,7 +28,7 @@ class FutexWords {
   std::int64_t Wait(Task& task, const TrappedCall& call, int command);
   std::int64_t WaitForAny(Task& task, const TrappedCall& call);
   // A wait begins, after the table knows where.
-  void Enter(Task& task, awaited::Futex wait, VirtualTime deadline);
+  void Enter(Task& task, awaited::Futex wait, VirtualTime deadline, bool is_date);
   // Wakes at most so many, one of whose bits is in `bits`. Returns how many.
   std::int64_t Wake(const FutexKey& key, std::int64_t most, std::uint32_t bits, Moment moment);
 
@@ -37,6 +37,8 @@ class FutexWords {
 
   // Null: no thread waits there.
   Task* MostUrgent(const FutexKey& key, std::uint32_t bits);
+  // Whether its timeout is a date.
+  static bool IsDate(const TrappedCall& call, int command);
   // From an absolute or relative timeout, if the call has one, to a deadline on its virtual CPU.
   // 0, or the call's error.
   std::int64_t Deadline(const Task& task, const TrappedCall& call, int command,

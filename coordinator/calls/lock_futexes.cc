@@ -41,7 +41,8 @@ std::int64_t LockFutexes::Lock(Task& task, const TrappedCall& call, int command)
   value |= kWaiters;
   if (!WriteMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
   words_.table().Wait(task.order, key, FUTEX_BITSET_MATCH_ANY);
-  words_.Enter(task, {.owner = owner->order, .lock_address = call.args[0]}, deadline);
+  words_.Enter(task, {.owner = owner->order, .lock_address = call.args[0]}, deadline,
+               FutexWords::IsDate(call, command));
   PriorityInheritance::BlockOn(task, owner);
   inheritance_.Find(*owner);
   return 0;

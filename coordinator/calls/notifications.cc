@@ -89,7 +89,8 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       waker_.Hold(task, note.kind);
       break;
     case Kind::kIdle:
-      waker_.Wait(task, {IdleFor(note), deadline});
+      waker_.Wait(task,
+                  {.what = IdleFor(note), .deadline = deadline, .is_date = note.args[2] != 0});
       break;
     case Kind::kWaitFds:
       waker_.Wait(task, {parts_.descriptors.WatchAsAsked(task, note), deadline});
@@ -127,6 +128,9 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
     case Kind::kPriorityGet:
     case Kind::kAffinity:
       parts_.scheduling.Handle(task, note);
+      break;
+    case Kind::kSetDate:
+      task.reply[0] = parts_.dates.Set(task, note.args[0]);
       break;
     case Kind::kSignalled:
       parts_.signals.Sent(SentBy(run_, task, note), moment);

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "coordinator/calls/date_calls.h"
 #include "coordinator/calls/dds_gateway.h"
 #include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/calls/kernel_object_waits.h"
@@ -39,6 +40,7 @@ class Notifications {
     LocalSockets& local_sockets;
     OutsideWaits& outside;
     SpinWaits& spins;
+    DateCalls& dates;
   };
 
   Notifications(RunState& run, Waker& waker, Parts parts)

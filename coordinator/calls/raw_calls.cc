@@ -71,6 +71,17 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
     case SYS_time:
       task.trap_result = parts_.times.ReadClock(task, call);
       break;
+    case SYS_clock_settime:
+    case SYS_settimeofday:
+      task.trap_result = parts_.times.SetClock(task, call);
+      break;
+    case SYS_adjtimex:
+    case SYS_clock_adjtime: {
+      const auto refused = parts_.times.Adjust(task, call);
+      task.trap_continues = !refused.has_value();
+      task.trap_result = refused.value_or(0);
+      break;
+    }
     case SYS_nanosleep:
     case SYS_clock_nanosleep:
       task.trap_result = parts_.times.Sleep(task, call);

@@ -101,7 +101,10 @@ void RawIpc::Queue(Task& task, const TrappedCall& call) {
   watched.takes = watched.fds.size() == 1;
   watched.events = waited.events;
   descriptors_.GoBehind(task, watched);
-  waker_.Wait(task, {std::move(watched), deadline, true});
+  waker_.Wait(task, {.what = std::move(watched),
+                     .deadline = deadline,
+                     .is_in_trapped_call = true,
+                     .is_date = true});
 }
 
 void RawIpc::AcceptSignal(Task& task, const TrappedCall& call) {

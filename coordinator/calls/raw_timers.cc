@@ -105,13 +105,14 @@ std::int64_t RawTimers::NowOf(const Task& task, const Process& owner,
 // Sets it (first_ns 0: disarms it) and returns what it was set to: until the next expiry, and the
 // interval.
 itimerspec RawTimers::Exchange(Task& task, const Found& found, bool sets, std::int64_t first_ns,
-                               std::int64_t interval_ns) {
+                               std::int64_t interval_ns, bool is_date) {
   const std::int64_t now = NowOf(task, *found.owner, *found.owner->timers.KindOf(found.id));
   shm::Notification note{};
   note.kind = sets ? shm::NotificationKind::kTimerSet : shm::NotificationKind::kTimerGet;
   note.args[0] = found.id;
   note.args[1] = first_ns;
   note.args[2] = interval_ns;
+  note.args[3] = is_date ? 1 : 0;
   calls_.Handle(*found.owner, task, note);
   const std::int64_t next = std::exchange(task.reply[0], 0);
   return {ToTimespec(std::exchange(task.reply[1], 0)), ToTimespec(shm::TimeLeft(next, now))};
@@ -122,12 +123,16 @@ std::int64_t RawTimers::Set(Task& task, const Found& found, const TrappedCall& c
   if (!Read(task, call.args[2], &given)) return -EFAULT;
   if (!IsValid(given)) return -EINVAL;
   const shm::TimerKind kind = *found.owner->timers.KindOf(found.id);
-  const std::int64_t offset = kind.clock != shm::TimerClock::kTime ? 0
-                              : kind.clock_tid != 0                ? run_.header->realtime_offset_ns
-                                                    : run_.header->monotonic_offset_ns;
-  const std::int64_t first = shm::FirstExpiry(ToNs(given.it_value), (call.args[1] & kAbsolute) != 0,
-                                              NowOf(task, *found.owner, kind), offset);
-  const itimerspec before = Exchange(task, found, true, first, ToNs(given.it_interval));
+  const bool is_absolute = (call.args[1] & kAbsolute) != 0;
+  const bool is_of_time = kind.clock == shm::TimerClock::kTime;
+  const bool is_real = is_of_time && kind.clock_tid != 0;
+  const std::int64_t offset = is_real      ? run_.header->realtime_offset_ns.load()
+                              : is_of_time ? run_.header->monotonic_offset_ns
+                                           : 0;
+  const std::int64_t first =
+      shm::FirstExpiry(ToNs(given.it_value), is_absolute, NowOf(task, *found.owner, kind), offset);
+  const itimerspec before =
+      Exchange(task, found, true, first, ToNs(given.it_interval), is_absolute && is_real);
   return call.args[3] == 0 || Write(task, call.args[3], before) ? 0 : -EFAULT;
 }
 

@@ -33,7 +33,7 @@ class RawTimers {
   static Found Adopt(const Task& task, int number);
   std::int64_t NowOf(const Task& task, const Process& owner, const shm::TimerKind& kind) const;
   itimerspec Exchange(Task& task, const Found& found, bool sets, std::int64_t first_ns,
-                      std::int64_t interval_ns);
+                      std::int64_t interval_ns, bool is_date = false);
   std::int64_t Set(Task& task, const Found& found, const TrappedCall& call);
   std::int64_t IntervalTimer(Task& task, const TrappedCall& call);
   std::int64_t PosixTimer(Task& task, const TrappedCall& call);

@@ -37,6 +37,27 @@ std::int64_t RawTimes::ReadClock(const Task& task, const TrappedCall& call) cons
   return Write(task, call.args[1], ToTimespec(shown)) ? 0 : -EFAULT;
 }
 
+std::int64_t RawTimes::SetClock(Task& task, const TrappedCall& call) {
+  if (call.number == SYS_settimeofday) {
+    if (call.args[0] == 0) return -EPERM;  // the time zone is the host's
+    timeval date{};
+    if (!tcs::Read(task, call.args[0], &date)) return -EFAULT;
+    if (call.args[1] != 0 || !shm::IsValid(date)) return -EINVAL;
+    return dates_.Set(task, shm::ToNs(date));
+  }
+  timespec date{};
+  if (static_cast<clockid_t>(call.args[0]) != CLOCK_REALTIME) return -EINVAL;
+  if (!tcs::Read(task, call.args[1], &date)) return -EFAULT;
+  return shm::IsValid(date) ? dates_.Set(task, shm::ToNs(date)) : -EINVAL;
+}
+
+std::optional<std::int64_t> RawTimes::Adjust(Task& task, const TrappedCall& call) {
+  unsigned modes = 0;  // the first member of its struct
+  const std::uint64_t change = call.args[call.number == SYS_adjtimex ? 0 : 1];
+  if (!tcs::Read(task, change, &modes)) return -EFAULT;
+  return modes == 0 ? std::nullopt : std::optional<std::int64_t>(-EPERM);
+}
+
 std::int64_t RawTimes::Sleep(Task& task, const TrappedCall& call) {
   const bool plain = call.number == SYS_nanosleep;
   const clockid_t clock = plain ? CLOCK_MONOTONIC : static_cast<clockid_t>(call.args[0]);
@@ -46,15 +67,17 @@ std::int64_t RawTimes::Sleep(Task& task, const TrappedCall& call) {
   if (!IsValid(request)) return -EINVAL;
   const bool absolute = !plain && (call.args[1] & kTimerAbsolute) != 0;
   VirtualTime until = AtMostNever(task.reached, VirtualNs(ToTimeoutNs(request)));
+  const bool is_date = absolute && shm::ClockOf(clock).kind == shm::ClockKind::kRealtime;
   if (absolute) {
-    const bool is_real = shm::ClockOf(clock).kind == shm::ClockKind::kRealtime;
     const std::int64_t offset =
-        is_real ? run_.header->realtime_offset_ns : run_.header->monotonic_offset_ns;
+        is_date ? run_.header->realtime_offset_ns.load() : run_.header->monotonic_offset_ns;
     until = task.process->clock.RobotTimeOf(OwnTime(ToTimeoutNs(request) - offset));
   }
   const std::uint64_t remaining_address = absolute ? 0 : call.args[plain ? 1 : 3];
-  waker_.Wait(task, {awaited::Time{.remaining_address = remaining_address},
-                     std::max(until, task.reached), true});
+  waker_.Wait(task, {.what = awaited::Time{.remaining_address = remaining_address},
+                     .deadline = std::max(until, task.reached),
+                     .is_in_trapped_call = true,
+                     .is_date = is_date});
   return 0;
 }
 

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "coordinator/calls/date_calls.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
@@ -13,14 +15,19 @@ namespace tcs {
 
 class RawTimes {
  public:
-  RawTimes(RunState& run, Waker& waker) : run_(run), waker_(waker) {}
+  RawTimes(RunState& run, Waker& waker, DateCalls& dates)
+      : run_(run), waker_(waker), dates_(dates) {}
 
   std::int64_t ReadClock(const Task& task, const TrappedCall& call) const;
   std::int64_t Sleep(Task& task, const TrappedCall& call);
+  std::int64_t SetClock(Task& task, const TrappedCall& call);
+  // None: it only reads the adjustment, which the kernel does.
+  std::optional<std::int64_t> Adjust(Task& task, const TrappedCall& call);
 
  private:
   RunState& run_;
   Waker& waker_;
+  DateCalls& dates_;
 };
 
 }  // namespace tcs

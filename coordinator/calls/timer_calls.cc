@@ -135,7 +135,7 @@ bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& n
   task.reply[0] = before.next_ns;
   task.reply[1] = before.interval_ns;
   if (note.kind != shm::NotificationKind::kTimerSet) return wrote;
-  timers.Set(id, {note.args[1], note.args[2]}, process.clock.lead());
+  timers.Set(id, {note.args[1], note.args[2], note.args[3] != 0}, process.clock.lead());
   const auto fd = process.timer_fds.find(id);
   if (fd != process.timer_fds.end()) ForgetExpirations(fd->second.get());
   return wrote;

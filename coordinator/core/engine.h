@@ -313,6 +313,7 @@ class Engine {
   TrapListeners traps_{reactor_};
   RegistrationSockets sockets_{reactor_};
   SpinWaits spins_{run_};
+  DateCalls dates_{run_, waker_};
   Registration registration_{
       {run_, waker_, reactor_, host_cpu_, sockets_, bare_programs_, births_, deaths_, dds_},
       [this](Process& process, Moment moment) {
@@ -330,7 +331,7 @@ class Engine {
                   unknown_children_, unmanaged_}};
 
   // Calls that are made raw.
-  RawTimes raw_times_{run_, waker_};
+  RawTimes raw_times_{run_, waker_, dates_};
   RawUsage raw_usage_{run_};
   ComputerFiles computer_files_{run_};
   RawLimits raw_limits_{run_};
@@ -358,7 +359,7 @@ class Engine {
       run_,
       waker_,
       {expulsion_, descriptors_, unknown_children_, timers_, spawns_, scheduling_, signals_,
-       objects_, dds_, local_sockets_, outside_, spins_}};
+       objects_, dds_, local_sockets_, outside_, spins_, dates_}};
 
   // What users are told.
   DebuggerHold debugger_{run_};

@@ -38,6 +38,8 @@ using filter::Return;
 constexpr std::uint32_t kTrapped[] = {
     // Clocks and sleeps.
     SYS_clock_gettime, SYS_gettimeofday, SYS_time, SYS_nanosleep, SYS_clock_nanosleep,
+    // What sets the host's clock.
+    SYS_clock_settime, SYS_settimeofday, SYS_adjtimex, SYS_clock_adjtime,
     // What was charged, and since when the computer is on.
     SYS_getrusage, SYS_times, SYS_sysinfo,
     // What waits for descriptors and for children.

@@ -61,7 +61,8 @@ const char* SlotCheck::WhatIsImpossible(const shm::Notification& note) {
   if (!is_known && note.kind != Kind::kPassOn && note.kind != Kind::kCall &&
       note.kind != Kind::kPreempted && note.kind != Kind::kBinds && note.kind != Kind::kReaches &&
       note.kind != Kind::kSignals && note.kind != Kind::kChildUsage &&
-      note.kind != Kind::kCounterReads && note.kind != Kind::kOutside && note.kind != Kind::kSpins)
+      note.kind != Kind::kCounterReads && note.kind != Kind::kOutside &&
+      note.kind != Kind::kSpins && note.kind != Kind::kSetDate)
     return "a notification of no kind";
   if (note.fd_count > shm::kMaxWaitFds) return "a wait for too many descriptors";
   if (note.kind != Kind::kTimerCreate) return nullptr;

@@ -44,7 +44,8 @@ shm::TimerKind KindOfOwn(std::int64_t which) {
 
 // How often it has run out by then, on its clock; sets it to the next time.
 std::int64_t ProcessTimers::Timer::TakeExpirations(std::int64_t clock_ns) {
-  auto& [next_ns, interval_ns] = setting;
+  std::int64_t& next_ns = setting.next_ns;
+  const std::int64_t interval_ns = setting.interval_ns;
   if (next_ns == 0 || next_ns > clock_ns) return 0;
   if (interval_ns == 0) {
     next_ns = 0;
@@ -143,10 +144,23 @@ void ProcessTimers::Set(Id id, Setting setting, VirtualDuration lead) {
   // those of setitimer on processor time.
   const bool forgets = setting.next_ns <= 0 && (timer->kind.is_posix != 0 || id == ITIMER_REAL);
   timer->setting.interval_ns = forgets ? 0 : std::max<std::int64_t>(0, setting.interval_ns);
+  timer->setting.is_date = setting.is_date;
   timer->lead = lead;
   timer->is_signal_underway = timer->was_seen_accepted = timer->rests = false;
   timer->overruns = timer->accepted_overruns = 0;
   FindNext();
+}
+
+void ProcessTimers::MoveDates(std::int64_t forward_ns, VirtualTime now) {
+  bool moves = false;
+  for (auto& [id, timer] : timers_) {
+    if (!timer.IsArmed() || !timer.setting.is_date) continue;
+    std::int64_t& next_ns = timer.setting.next_ns;
+    next_ns = std::max<std::int64_t>(1, shm::AddSaturated(next_ns, -forward_ns));
+    timer.rests = false;
+    moves = true;
+  }
+  if (moves) FindNext(now);
 }
 
 void ProcessTimers::FindNext(VirtualTime earliest) {

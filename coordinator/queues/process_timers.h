@@ -61,6 +61,7 @@ class ProcessTimers {
   struct Setting {
     std::int64_t next_ns = 0;  // 0: not armed
     std::int64_t interval_ns = 0;
+    bool is_date = false;  // next_ns: it moves when the date is set
   };
   struct RanOut {
     Id id;
@@ -103,6 +104,8 @@ class ProcessTimers {
   // Forgets the timer's earlier setting and its signal's overruns, but not a signal that is on its
   // way.
   void Set(Id id, Setting setting, VirtualDuration lead);
+  // The date has been set, so much forward, at `now`.
+  void MoveDates(std::int64_t forward_ns, VirtualTime now);
 
   // When the next one on the process's clock runs out.
   VirtualTime NextExpiry() const { return next_expiry_; }

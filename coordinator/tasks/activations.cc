@@ -29,7 +29,7 @@ ReleaseCause CauseOf(const Task& task, shm::WakeReason reason) {
 std::int64_t FirstExpiryAfter(const Process& process, std::int64_t looked_ns, std::int64_t now_ns) {
   std::int64_t first_ns = now_ns;
   for (const ProcessTimers::Armed& timer : process.timers.AllArmed()) {
-    const auto [next_ns, interval_ns] = timer.setting;
+    const std::int64_t next_ns = timer.setting.next_ns, interval_ns = timer.setting.interval_ns;
     if (interval_ns <= 0) continue;
     const std::int64_t into = (looked_ns - next_ns) % interval_ns;
     const std::int64_t expiry_ns = looked_ns - into + (into < 0 ? 0 : interval_ns);

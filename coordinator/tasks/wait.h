@@ -115,6 +115,7 @@ struct Wait {
   What what;
   VirtualTime deadline = VirtualTime::Never();
   bool is_in_trapped_call = false;  // whose result its end decides
+  bool is_date = false;             // the deadline: it moves when the date is set
 
   template <class Kind>
   const Kind* As() const {

@@ -108,6 +108,11 @@ void Waker::Leave(Task& task) {
   listeners_.left(task, *left);
 }
 
+void Waker::MoveDeadline(Task& task, VirtualTime to) {
+  task.wait->deadline = to;
+  Requeue(task);
+}
+
 // So that those whom nobody waits for need not tell of what they do.
 void Waker::ShowObjectWaiters() {
   const auto waiters = static_cast<std::uint32_t>(counts_.for_objects());

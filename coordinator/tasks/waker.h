@@ -48,6 +48,8 @@ class Waker {
   // The beginning of a wait, and its end; nothing happens if the thread does not wait.
   void Wait(Task& task, tcs::Wait wait);
   void Leave(Task& task);
+  // Of a thread that waits.
+  void MoveDeadline(Task& task, VirtualTime to);
   // What else happens to it: it has registered, is in the kernel's hands, has ended.
   void SetState(Task& task, TaskState state, bool goes_first = false);
 
