@@ -71,6 +71,12 @@ Task* TimerSignals::TakerOf(const Process& process, const TimerSignal& signal) c
   return taker == nullptr || taker->state == TaskState::kUnseen ? nullptr : taker;
 }
 
+bool TimerSignals::IsLost(const Process& process, const TimerSignal& signal) const {
+  Task* receiver = run_.table.Living(signal.tid != 0 ? signal.tid : process.pid);
+  return receiver != nullptr &&
+         (LostOf(SignalsOf(run_, *receiver)) & SignalBit(signal.number)) != 0;
+}
+
 void TimerSignals::Route(Process& process, Moment moment) {
   bool sent = false;
   for (TimerSignal& signal : process.timers.TakeSignals()) {
@@ -78,7 +84,9 @@ void TimerSignals::Route(Process& process, Moment moment) {
       const pid_t accepter = AccepterOf(process, signal);
       Task* taker = accepter != 0 ? nullptr : TakerOf(process, signal);
       if (taker == nullptr) {
+        const bool is_lost = accepter == 0 && IsLost(process, signal);
         Send(process, signal, accepter != 0 ? accepter : signal.tid);
+        if (is_lost) process.timers.Lost(signal.timer_id);
         sent = true;
         continue;
       }

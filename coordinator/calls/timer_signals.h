@@ -31,6 +31,8 @@ class TimerSignals {
  private:
   static pid_t AccepterOf(const Process& process, const TimerSignal& signal);
   Task* TakerOf(const Process& process, const TimerSignal& signal) const;
+  // Nobody will hear of it.
+  bool IsLost(const Process& process, const TimerSignal& signal) const;
 
   RunState& run_;
   Waker& waker_;

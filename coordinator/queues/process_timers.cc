@@ -300,6 +300,13 @@ void ProcessTimers::Accept(Id id) {
   timer->was_seen_accepted = true;
 }
 
+void ProcessTimers::Lost(Id id) {
+  Timer* timer = Find(id);
+  if (timer == nullptr) return;
+  timer->is_signal_underway = false;
+  timer->overruns = 0;
+}
+
 void ProcessTimers::AcceptAt(Id id, VirtualTime now, bool is_pending) {
   Timer* timer = Find(id);
   if (timer == nullptr) return;

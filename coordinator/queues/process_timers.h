@@ -136,6 +136,8 @@ class ProcessTimers {
   // Of timer_create's timers: the signals that were sent and not yet seen accepted.
   std::vector<SentSignal> SentSignals() const;
   void Accept(Id id);
+  // It did nothing, and nobody has accepted it: the overruns are those of the signal before.
+  void Lost(Id id);
   // The same by the thread that has just accepted the signal: the expirations until now belong to
   // the accepted signal. Where that one was seen accepted before the thread could say so, and the
   // next one is pending already, that one is still to be accepted.

@@ -14,14 +14,17 @@ constexpr std::uint64_t kDoNothing =
 
 }  // namespace
 
+std::uint64_t LostOf(const SignalSets& sets) {
+  return (sets.ignored | (kDoNothing & ~sets.caught)) & ~sets.blocked;
+}
+
 SignalSets SignalsOf(const RunState& run, Task& task) {
   constexpr std::uint64_t kOurs = SignalBit(shm::kPreemptionSignal);
   SignalSets sets = ReadSignalSets(task.tid);
   const bool is_at_gate = task.slot >= 0 && task.parked && task.trap_id == 0;
   if (run.gates_only && is_at_gate) {
     sets.blocked = SlotOf(task).blocked_signals;
-    // The kernel keeps what does nothing only as long as it is blocked.
-    const std::uint64_t lost = (sets.ignored | (kDoNothing & ~sets.caught)) & ~sets.blocked;
+    const std::uint64_t lost = LostOf(sets);
     sets.own_pending &= ~lost;
     sets.shared_pending &= ~lost;
   }

@@ -13,5 +13,8 @@ namespace tcs {
 // thread has to handle it, whatever it waits in. At its gate a thread blocks more than its program
 // does, until it waits there.
 SignalSets SignalsOf(const RunState& run, Task& task);
+// The signals that the kernel drops when they are sent to a thread with these sets: they do
+// nothing, and are not blocked.
+std::uint64_t LostOf(const SignalSets& sets);
 
 }  // namespace tcs

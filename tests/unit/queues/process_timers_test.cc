@@ -314,6 +314,34 @@ TEST_F(ProcessTimersTest, ThereIsRoomForSoMany) {
   EXPECT_FALSE(timers_.IsFull());
 }
 
+TEST_F(ProcessTimersTest, OverrunsOfALostSignalAreNobodys) {
+  const auto id = Armed(kPosix, 10 * kMs, 10 * kMs);
+  timers_.Expire(RobotTime(35 * kMs));
+  SendAll();
+  timers_.Accept(id);
+  EXPECT_EQ(timers_.Overruns(id), 2);
+  timers_.Expire(RobotTime(95 * kMs));
+  SendAll();
+  timers_.Lost(id);
+  EXPECT_TRUE(timers_.SentSignals().empty());
+  EXPECT_EQ(timers_.Overruns(id), 2);
+  timers_.Expire(RobotTime(105 * kMs));
+  EXPECT_TRUE(timers_.HasSignals());
+}
+
+TEST_F(ProcessTimersTest, WhatRunsOutAtADateMovesWithTheDate) {
+  const auto at_date = timers_.Create(kDescriptor), in_time = Armed(kDescriptor, 50 * kMs);
+  timers_.Set(at_date, {50 * kMs, 0, true}, {});
+  timers_.MoveDates(-20 * kMs, RobotTime(kMs));
+  EXPECT_EQ(timers_.Get(at_date).next_ns, 70 * kMs);
+  EXPECT_EQ(timers_.Get(in_time).next_ns, 50 * kMs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(50 * kMs));
+  timers_.MoveDates(1'000 * kMs, RobotTime(2 * kMs));
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(2 * kMs));  // not before it was set
+  EXPECT_EQ(CountAt(at_date, 2 * kMs), 1);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(50 * kMs));
+}
+
 // Processor time.
 
 TEST_F(ProcessTimersTest, OnProcessorTimeOfTheProcessAllThreadsCount) {
