@@ -30,18 +30,18 @@ std::optional<int> SignalIn(const TrappedCall& call) {
   }
 }
 
-// By the numbers that the sender's process says.
+// By the numbers that the sender's process says; the kernel takes that of any thread for its
+// process.
 SentSignal Sent(RunState& run, const Task& by, pid_t pid, pid_t tid, int number) {
-  if (by.process->pid_namespace != 0) {
-    const Process* process = pid > 0 ? run.table.NamedProcess(*by.process, pid) : nullptr;
-    const Task* thread = tid > 0 ? run.table.Named(*by.process, tid) : nullptr;
-    pid = process == nullptr ? 0 : process->pid;
-    tid = thread == nullptr ? 0 : thread->tid;
-  }
-  return {.pid = std::max(pid, 0),
-          .tid = std::max(tid, 0),
+  const Task* thread = tid > 0 ? run.table.Named(*by.process, tid) : nullptr;
+  const Task* in_process = pid > 0 ? run.table.Named(*by.process, pid) : thread;
+  const bool is_own_number = by.process->pid_namespace == 0;
+  return {.pid = in_process != nullptr ? in_process->process->pid
+                 : is_own_number       ? std::max(pid, 0)
+                                       : 0,
+          .tid = thread != nullptr ? thread->tid : 0,
           .number = number,
-          .is_to_itself = tid == by.tid};
+          .is_to_itself = thread == &by};
 }
 
 }  // namespace

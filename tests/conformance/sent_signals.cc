@@ -221,6 +221,8 @@ void Stops() {
   EXPECT(waitpid(child, &status, 0) == child && WTERMSIG(status) == SIGKILL, "%x", status);
 }
 
+std::atomic<pid_t> g_first_tid{0};
+
 // Which thread of `threads` ends its sleep at once, -1 if none does within 30 ms. Thread `taker`
 // does not block SIGUSR2; the others do. `waiter` waits for it by sigwait.
 int WhoTakes(int taker, int waiter,
@@ -231,6 +233,7 @@ int WhoTakes(int taker, int waiter,
   std::vector<std::thread> threads;
   for (int i = 0; i < kThreads; ++i) {
     threads.emplace_back([&, i] {
+      if (i == 0) g_first_tid = gettid();
       sigset_t set;
       sigemptyset(&set);
       sigaddset(&set, SIGUSR2);
@@ -282,6 +285,17 @@ void AmongThreads() {
     EXPECT(sigqueue(getpid(), SIGUSR2, {.sival_int = 3}) == 0, "sigqueue");
   });
   EXPECT(by_value == 2, "sigqueue: thread %d instead of 2", by_value);
+  // The number of a thread that blocks it stands for its process.
+  const int by_number = WhoTakes(3, -1, [](const std::vector<pthread_t>&) {
+    EXPECT(kill(g_first_tid, SIGUSR2) == 0, "kill");
+  });
+  EXPECT(by_number == 3, "kill by a thread's number: thread %d instead of 3", by_number);
+  const int by_raw_number = WhoTakes(1, -1, [](const std::vector<pthread_t>&) {
+    siginfo_t info{};
+    info.si_code = SI_QUEUE;
+    EXPECT(syscall(SYS_rt_sigqueueinfo, g_first_tid.load(), SIGUSR2, &info) == 0, "raw");
+  });
+  EXPECT(by_raw_number == 1, "rt_sigqueueinfo: thread %d instead of 1", by_raw_number);
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
