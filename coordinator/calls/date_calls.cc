@@ -24,14 +24,15 @@ bool MaySetDate(const Task& task) {
 
 std::int64_t DateCalls::Set(Task& task, std::int64_t date_ns) {
   const std::int64_t now_ns = OwnNow(task).ns();
-  // Not before the computer was started.
-  if (date_ns < now_ns + run_.header->monotonic_offset_ns || date_ns > kLatestDateNs) {
-    return -EINVAL;
-  }
+  if (date_ns < 0 || date_ns > kLatestDateNs) return -EINVAL;
   if (!MaySetDate(task) || run_.robots.size() > 1) return -EPERM;
+  // Not before the computer was started.
+  if (date_ns < now_ns + run_.header->monotonic_offset_ns) return -EINVAL;
   std::int64_t offset_ns = date_ns - now_ns;
   if (offset_ns == 0) offset_ns = 1;  // which would say that there is none
-  const std::int64_t forward_ns = offset_ns - run_.header->realtime_offset_ns.exchange(offset_ns);
+  const std::int64_t before_ns = run_.header->realtime_offset_ns.exchange(offset_ns);
+  if (!run_.first_realtime_offset_ns.has_value()) run_.first_realtime_offset_ns = before_ns;
+  const std::int64_t forward_ns = offset_ns - before_ns;
   for (Task& other : run_.table.tasks()) {
     if (!other.wait.has_value() || !other.wait->is_date || other.wait->deadline.IsNever()) continue;
     const VirtualTime moved = RobotTime(shm::AddSaturated(other.wait->deadline.ns(), -forward_ns));

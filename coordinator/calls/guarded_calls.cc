@@ -123,6 +123,11 @@ std::optional<std::int64_t> GuardedCalls::InsteadOfKernel(const TrappedCall& cal
     case SYS_sched_setattr:
     case SYS_sched_setaffinity:
       return 0;  // the host's scheduler does not hear of it, whoever calls
+    case SYS_clock_settime:
+    case SYS_settimeofday:
+    case SYS_adjtimex:
+    case SYS_clock_adjtime:
+      return -EPERM;  // nor does its clock (date_calls.h)
     default:
       return std::nullopt;
   }

@@ -7,8 +7,8 @@
 namespace tcs {
 
 // Publishes what the thread, which has registered and is stopped, has noted in its slot. Null; or
-// what of it cannot be, as SlotCheck has it. For the coordinator's thread only; makes no system
-// call.
-const char* TakeIpcNotes(Task& task, shm::RunMemory& memory);
+// what of it cannot be, as SlotCheck has it: where the date was set, any time can. For the
+// coordinator's thread only; makes no system call.
+const char* TakeIpcNotes(Task& task, shm::RunMemory& memory, bool date_was_set);
 
 }  // namespace tcs

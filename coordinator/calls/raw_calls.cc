@@ -26,7 +26,8 @@ bool IsOfOwner(const TrappedCall& call) {
 void RawCalls::Signal(Task& task) {
   task.trap_continues = true;
   if (OnlyAsks(task.trapped_call)) return;
-  if (SlotOf(task).signals.load() != 0) {
+  // The one call that the shim waits for; any other is a handler's, which interrupts it.
+  if (SlotOf(task).signals.load() == shm::kSendsByLibrary && task.sending.number == 0) {
     task.sending = task.trapped_call;
     return;
   }
@@ -76,12 +77,9 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
       task.trap_result = parts_.times.SetClock(task, call);
       break;
     case SYS_adjtimex:
-    case SYS_clock_adjtime: {
-      const auto refused = parts_.times.Adjust(task, call);
-      task.trap_continues = !refused.has_value();
-      task.trap_result = refused.value_or(0);
+    case SYS_clock_adjtime:
+      task.trap_result = parts_.times.Adjust(task, call);
       break;
-    }
     case SYS_nanosleep:
     case SYS_clock_nanosleep:
       task.trap_result = parts_.times.Sleep(task, call);

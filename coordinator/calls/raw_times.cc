@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
+#include <sys/timex.h>
 #include <time.h>
 
 #include <algorithm>
@@ -39,10 +40,11 @@ std::int64_t RawTimes::ReadClock(const Task& task, const TrappedCall& call) cons
 
 std::int64_t RawTimes::SetClock(Task& task, const TrappedCall& call) {
   if (call.number == SYS_settimeofday) {
-    if (call.args[0] == 0) return -EPERM;  // the time zone is the host's
+    if (call.args[1] != 0) return -EPERM;  // the time zone is the host's
+    if (call.args[0] == 0) return 0;
     timeval date{};
     if (!tcs::Read(task, call.args[0], &date)) return -EFAULT;
-    if (call.args[1] != 0 || !shm::IsValid(date)) return -EINVAL;
+    if (!shm::IsValid(date)) return -EINVAL;
     return dates_.Set(task, shm::ToNs(date));
   }
   timespec date{};
@@ -51,11 +53,20 @@ std::int64_t RawTimes::SetClock(Task& task, const TrappedCall& call) {
   return shm::IsValid(date) ? dates_.Set(task, shm::ToNs(date)) : -EINVAL;
 }
 
-std::optional<std::int64_t> RawTimes::Adjust(Task& task, const TrappedCall& call) {
-  unsigned modes = 0;  // the first member of its struct
-  const std::uint64_t change = call.args[call.number == SYS_adjtimex ? 0 : 1];
-  if (!tcs::Read(task, change, &modes)) return -EFAULT;
-  return modes == 0 ? std::nullopt : std::optional<std::int64_t>(-EPERM);
+// The host's clock is read for the program: it could change what is asked for meanwhile.
+std::int64_t RawTimes::Adjust(const Task& task, const TrappedCall& call) const {
+  timex state{};
+  const std::uint64_t to = call.args[call.number == SYS_adjtimex ? 0 : 1];
+  if (!tcs::Read(task, to, &state)) return -EFAULT;
+  if (state.modes != 0) return -EPERM;
+  const int how = adjtimex(&state);
+  if (how < 0) return -errno;
+  const std::int64_t now = OwnNow(task).ns() + run_.header->realtime_offset_ns;
+  const std::int64_t fraction = now % shm::kNsPerSecond;
+  state.time = {now / shm::kNsPerSecond,
+                (state.status & STA_NANO) != 0 ? fraction : fraction / 1000};
+  state.freq = state.offset = 0;
+  return Write(task, to, state) ? how : -EFAULT;
 }
 
 std::int64_t RawTimes::Sleep(Task& task, const TrappedCall& call) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "coordinator/calls/date_calls.h"
 #include "coordinator/os/trap.h"
@@ -21,8 +20,7 @@ class RawTimes {
   std::int64_t ReadClock(const Task& task, const TrappedCall& call) const;
   std::int64_t Sleep(Task& task, const TrappedCall& call);
   std::int64_t SetClock(Task& task, const TrappedCall& call);
-  // None: it only reads the adjustment, which the kernel does.
-  std::optional<std::int64_t> Adjust(Task& task, const TrappedCall& call);
+  std::int64_t Adjust(const Task& task, const TrappedCall& call) const;
 
  private:
   RunState& run_;

@@ -31,7 +31,11 @@ SampleFeed::SampleFeed(RunState& run, AnswerFeed& answers, const dds::TopicLog& 
 
 // On the world's clock.
 std::int64_t SampleFeed::SentAt(const dds::TopicLog::Delivery& delivery) const {
-  return delivery.source_timestamp_ns - run_.header->realtime_offset_ns;
+  // The world keeps the date that it began with.
+  const std::int64_t now_ns = run_.header->realtime_offset_ns;
+  const std::int64_t offset_ns =
+      delivery.from == 0 ? run_.first_realtime_offset_ns.value_or(now_ns) : now_ns;
+  return delivery.source_timestamp_ns - offset_ns;
 }
 
 // Numbers are not given to others.

@@ -40,7 +40,7 @@ SentSignal Sent(RunState& run, const Task& by, pid_t pid, pid_t tid, int number)
                  : is_own_number       ? std::max(pid, 0)
                                        : 0,
           .tid = thread != nullptr ? thread->tid : 0,
-          .number = number,
+          .number = tid > 0 && thread == nullptr ? 0 : number,  // else it would be its process's
           .is_to_itself = thread == &by};
 }
 
@@ -66,8 +66,10 @@ SentSignal SentBy(RunState& run, const Task& task, const TrappedCall& call) {
     case SYS_tgkill:
     case SYS_rt_tgsigqueueinfo:
       return Sent(run, task, Arg(call, 0), Arg(call, 1), *number);
-    default:  // by what else it names the receiver is not looked up
-      return {.number = *number};
+    case SYS_tkill:
+      return Sent(run, task, 0, Arg(call, 0), *number);
+    default:  // by a pidfd, which may be a thread's
+      return {};
   }
 }
 

@@ -3,6 +3,7 @@
 #include <x86gprintrin.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "coordinator/os/host.h"
 #include "coordinator/tasks/signal_sets.h"
@@ -14,7 +15,8 @@ bool SignalCalls::Poll() {
       run_.gates_only || waker_.counts().for_signals() > 0 || waker_.counts().for_stops() > 0;
   // The call in which the kernel holds a thread may be what has it send one: to the holder of a
   // lease, say, for whom the thread waits.
-  if (!awaited || (__rdtsc() < next_look_tsc_ && waker_.unseen() == 0)) return false;
+  const bool is_held_anew = waker_.unseen() > std::exchange(unseen_, waker_.unseen());
+  if (!awaited || (__rdtsc() < next_look_tsc_ && !is_held_anew)) return false;
   next_look_tsc_ = __rdtsc() + clock_.TicksIn(kLookEvery.ns());
   bool ended = false;
   const VirtualTime now = run_.turn.lasts() ? run_.WrittenAt() : run_.latest;

@@ -46,6 +46,7 @@ class SignalCalls {
   const RunClock& clock_;
   std::function<void(const Process&, VirtualTime)> looked_at_;
   std::uint64_t next_look_tsc_ = 0;
+  int unseen_ = 0;  // threads that the kernel had in its hands at the last look
 };
 
 }  // namespace tcs

@@ -25,9 +25,8 @@ bool SignalWakes::EndAwait(Task& task, const SignalSets& sets, Moment moment) {
 
 // A thread that waits may have kept the level of its last dispatch. With a signal it would run
 // before its next one, and lose what its call is to return.
-SignalSets SignalWakes::HoldAndAsk(Task& task) {
+void SignalWakes::HoldUntilDispatched(Task& task) {
   if (!active_.IsLast(task)) active_.Hold(task);
-  return SignalsOf(run_, task);
 }
 
 void SignalWakes::WakeFor(Task& task, const SignalSets& sets, std::uint64_t* taken, Moment moment) {
@@ -46,7 +45,8 @@ void SignalWakes::WakeFor(Task& task, const SignalSets& sets, std::uint64_t* tak
 void SignalWakes::WakeForSignals(Process& process, Moment moment) {
   std::uint64_t taken = 0;
   for (Task* task : run_.table.ThreadsOf(process)) {
-    WakeFor(*task, HoldAndAsk(*task), &taken, moment);
+    HoldUntilDispatched(*task);
+    WakeFor(*task, SignalsOf(run_, *task), &taken, moment);
   }
 }
 
@@ -57,9 +57,11 @@ void SignalWakes::WakeForSignal(Process& process, const SentSignal& sent, Moment
   if (!is_known) return WakeForSignals(process, moment);
   const std::uint64_t bit = SignalBit(sent.number);
   std::uint64_t taken = 0;
-  for (Task* task : run_.table.ThreadsOf(process)) {
-    if (receiver != nullptr && task != receiver) continue;
-    const SignalSets sets = HoldAndAsk(*task);
+  const std::vector<Task*> threads =
+      receiver != nullptr ? std::vector<Task*>{receiver} : run_.table.ThreadsOf(process);
+  for (Task* task : threads) HoldUntilDispatched(*task);
+  for (Task* task : threads) {
+    const SignalSets sets = SignalsOf(run_, *task);
     if ((sets.caught & bit) == 0) return WakeForSignals(process, moment);  // it may end the process
     WakeFor(*task, sets, &taken, moment);
     const bool is_there_to_take = (sets.shared_pending & ~taken & bit) != 0;

@@ -32,8 +32,7 @@ class SignalWakes {
   bool HasSignalForTrapped(Task& task) const;
 
  private:
-  // What the thread knows of signals, once it can act on none before its next dispatch.
-  SignalSets HoldAndAsk(Task& task);
+  void HoldUntilDispatched(Task& task);
   // Of signals for the whole process it takes none of `taken`. Adds those that it takes.
   void WakeFor(Task& task, const SignalSets& sets, std::uint64_t* taken, Moment moment);
   void AnswerAhead(Task& task);

@@ -194,7 +194,7 @@ void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, HostDura
 
 // False if the thread cannot have done what it has noted: its process is ended for that.
 bool Engine::TakeNotesOf(Task& task) {
-  const char* what = TakeIpcNotes(task, *memory_);
+  const char* what = TakeIpcNotes(task, *memory_, run_.first_realtime_offset_ns.has_value());
   if (what == nullptr) what = datagrams_.TakeNotes(task, task.cpu->progress);
   if (what != nullptr) expulsion_.Expel(*task.process, what);
   return what == nullptr;
@@ -484,8 +484,9 @@ void Engine::LookForUntoldSignals(const Task& task, Moment stop) {
   const std::uint32_t sends = SlotOf(task).signals.load();
   if (sends == 0) return;
   const bool by_library = sends == shm::kSendsByLibrary;
-  // Not yet: here is the call.
-  if (by_library && run_.turn.trapped.has_value() && SendsSignal(*run_.turn.trapped)) return;
+  // Not yet: here is the call. Once that has been here, another one is a handler's.
+  const bool calls = run_.turn.trapped.has_value() && SendsSignal(*run_.turn.trapped);
+  if (by_library && calls && task.sending.number == 0) return;
   signals_.Sent(by_library ? SentBy(run_, task, task.sending) : SentSignal(), stop);
 }
 

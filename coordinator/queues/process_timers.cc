@@ -156,7 +156,9 @@ void ProcessTimers::MoveDates(std::int64_t forward_ns, VirtualTime now) {
   for (auto& [id, timer] : timers_) {
     if (!timer.IsArmed() || !timer.setting.is_date) continue;
     std::int64_t& next_ns = timer.setting.next_ns;
-    next_ns = std::max<std::int64_t>(1, shm::AddSaturated(next_ns, -forward_ns));
+    // How long it is over tells how often it has run out.
+    next_ns = std::max(shm::AddSaturated(next_ns, -forward_ns), -shm::kFarNs);
+    if (next_ns == 0) next_ns = 1;  // which would say that it is not armed
     timer.rests = false;
     moves = true;
   }

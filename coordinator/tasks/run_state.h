@@ -41,6 +41,9 @@ struct RunState {
   double ticks_per_ns = 1.0;         // of the TSC
   shm::RunHeader* header = nullptr;  // which all clients can read; null before the set-up
 
+  // What CLOCK_REALTIME was ahead of virtual time at first, once a program has set the date.
+  std::optional<std::int64_t> first_realtime_offset_ns;
+
   VirtualTime end;
   // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
   VirtualTime latest;

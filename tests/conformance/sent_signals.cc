@@ -285,6 +285,10 @@ void AmongThreads() {
     EXPECT(sigqueue(getpid(), SIGUSR2, {.sival_int = 3}) == 0, "sigqueue");
   });
   EXPECT(by_value == 2, "sigqueue: thread %d instead of 2", by_value);
+  const int by_tkill = WhoTakes(0, -1, [](const std::vector<pthread_t>&) {
+    EXPECT(syscall(SYS_tkill, g_first_tid.load(), SIGUSR2) == 0, "tkill");
+  });
+  EXPECT(by_tkill == 0, "tkill: thread %d instead of 0", by_tkill);
   // The number of a thread that blocks it stands for its process.
   const int by_number = WhoTakes(3, -1, [](const std::vector<pthread_t>&) {
     EXPECT(kill(g_first_tid, SIGUSR2) == 0, "kill");

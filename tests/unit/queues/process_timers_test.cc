@@ -342,6 +342,14 @@ TEST_F(ProcessTimersTest, WhatRunsOutAtADateMovesWithTheDate) {
   EXPECT_EQ(timers_.NextExpiry(), RobotTime(50 * kMs));
 }
 
+TEST_F(ProcessTimersTest, WhatRunsOutAtEachFullSecondDoesSoWhereverTheDateGoes) {
+  const auto id = timers_.Create(kDescriptor);
+  timers_.Set(id, {50 * kMs, 1'000 * kMs, true}, {});
+  timers_.MoveDates(3'600'300 * kMs, RobotTime(20 * kMs));
+  EXPECT_EQ(CountAt(id, 20 * kMs), 3601);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(750 * kMs));
+}
+
 // Processor time.
 
 TEST_F(ProcessTimersTest, OnProcessorTimeOfTheProcessAllThreadsCount) {
