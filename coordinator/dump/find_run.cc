@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
@@ -39,8 +41,17 @@ std::vector<pid_t> AllProcesses() {
   return all;
 }
 
-// The memory that the process shares with whoever asks; none if it has none, or may not be looked
-// into.
+// A run that is about to begin has not written yet whose memory it is.
+bool HasBegun(const UniqueFd& memory) {
+  std::uint32_t begins[2] = {};
+  static_assert(offsetof(StatePage, magic) == 0 &&
+                offsetof(StatePage, version) == sizeof begins[0]);
+  return pread(memory.get(), begins, sizeof begins, 0) == sizeof begins && begins[0] != 0 &&
+         begins[1] != 0;
+}
+
+// The memory that the process shares with whoever asks; none if it has none yet, or may not be
+// looked into.
 UniqueFd StateMemoryOf(pid_t pid) {
   const std::string folder = ProcOf(pid) + "/fd";
   const std::string target = std::string("/memfd:") + StatePage::kName + " (deleted)";
@@ -56,7 +67,7 @@ UniqueFd StateMemoryOf(pid_t pid) {
     break;
   }
   closedir(descriptors);
-  return memory;
+  return memory && HasBegun(memory) ? std::move(memory) : UniqueFd();
 }
 
 bool IsSameMemory(const UniqueFd& one, const UniqueFd& other) {
