@@ -100,11 +100,11 @@ TCS_EXPORT int pthread_sigqueue(pthread_t thread, int signal, const sigval value
 TCS_EXPORT int pthread_cancel(pthread_t thread) {
   constexpr int kCancelSignal = 32;
   const bool own = pthread_equal(thread, pthread_self()) != 0;
-  const pid_t tid = own ? -1 : TidOf(thread);
-  return SendSignal(ReceiverOf(thread), kCancelSignal, kSendsItself, [&] {
+  const Receiver receiver = ReceiverOf(thread);
+  return SendSignal(receiver, kCancelSignal, kSendsItself, [&] {
     const int error = TCS_REAL(pthread_cancel)(thread);
-    if (error == 0 && tid > 0) {
-      SendRaw(SYS_tgkill, RawSyscall(SYS_getpid), tid, kCancelSignal);
+    if (error == 0 && !own && receiver.thread > 0) {
+      SendRaw(SYS_tgkill, receiver.process, receiver.thread, kCancelSignal);
     }
     return error;
   });

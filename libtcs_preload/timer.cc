@@ -24,9 +24,6 @@ using tcs::shm::TimeLeft;
 
 namespace {
 
-// Instead of the mark: a timer that was made raw, or by another program, the coordinator knows.
-constexpr long kTrapped = 0;
-
 struct TimerValue {
   std::int64_t next_ns;  // 0: not armed
   std::int64_t interval_ns;
@@ -123,7 +120,7 @@ TCS_EXPORT int timerfd_create(int clock, int flags) {
 TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* given, itimerspec* old) {
   const Entered t;
   const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
-  if (timer == nullptr) {
+  if (timer == nullptr) {  // one that was made raw, or by another program, the coordinator knows
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_timerfd_settime, fd, flags, Arg(given), Arg(old), 0, kTrapped)));
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <sys/time.h>
+#include <sys/timex.h>
 #include <time.h>
 
 #include <cstdint>
@@ -49,6 +50,15 @@ constexpr timeval ToTimeval(std::int64_t ns) {
   return timeval{t.tv_sec, t.tv_nsec / 1'000};
 }
 constexpr timeval RoundUpToTimeval(std::int64_t ns) { return ToTimeval(AddSaturated(ns, 999)); }
+
+// What adjtimex says of a clock that shows that date, and that nothing disciplines; the rest of
+// `state` is the kernel's.
+inline void ShowUndisciplined(std::int64_t date_ns, timex* state) {
+  const timespec date = ToTimespec(date_ns);
+  state->time =
+      timeval{date.tv_sec, (state->status & STA_NANO) != 0 ? date.tv_nsec : date.tv_nsec / 1'000};
+  state->freq = state->offset = 0;
+}
 
 // As the kernel has it of what it is given.
 constexpr bool IsValid(const timespec& t) {

@@ -16,16 +16,12 @@ namespace {
 constexpr std::int64_t kLatestDateNs =
     INT64_MAX - std::int64_t{30} * 365 * 24 * 3600 * shm::kNsPerSecond;
 
-bool MaySetDate(const Task& task) {
-  return (ReadCredentials(task.tid).capabilities >> CAP_SYS_TIME & 1) != 0;
-}
-
 }  // namespace
 
 std::int64_t DateCalls::Set(Task& task, std::int64_t date_ns) {
   const std::int64_t now_ns = OwnNow(task).ns();
   if (date_ns < 0 || date_ns > kLatestDateNs) return -EINVAL;
-  if (!MaySetDate(task) || run_.robots.size() > 1) return -EPERM;
+  if (!ReadCredentials(task.tid).Has(CAP_SYS_TIME) || run_.robots.size() > 1) return -EPERM;
   // Not before the computer was started.
   if (date_ns < now_ns + run_.header->monotonic_offset_ns) return -EINVAL;
   std::int64_t offset_ns = date_ns - now_ns;

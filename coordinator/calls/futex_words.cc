@@ -57,8 +57,7 @@ std::int64_t FutexWords::Deadline(const Task& task, const TrappedCall& call, int
     *deadline = now + VirtualNs(ns);
     return 0;
   }
-  const std::int64_t offset = IsDate(call, command) ? run_.header->realtime_offset_ns.load()
-                                                    : run_.header->monotonic_offset_ns;
+  const std::int64_t offset = run_.OffsetOf(IsDate(call, command));
   *deadline = std::max(now, task.process->clock.RobotTimeOf(OwnTime(ns - offset)));
   return 0;
 }

@@ -37,7 +37,7 @@ pid_t ProcessOfFd(pid_t tid, int number) {
 
 bool MaySignal(const Credentials& sender, pid_t receiver) {
   constexpr int kCapKill = 5;
-  if ((sender.capabilities >> kCapKill & 1) != 0) return true;
+  if (sender.Has(kCapKill)) return true;
   const uid_t owner = ReadCredentials(receiver).real_uid;
   return owner == sender.real_uid || owner == sender.effective_uid;
 }

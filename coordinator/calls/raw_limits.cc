@@ -14,7 +14,7 @@ namespace {
 
 bool HasRight(const Credentials& caller) {
   constexpr int kCapSysResource = 24;
-  return (caller.capabilities >> kCapSysResource & 1) != 0;
+  return caller.Has(kCapSysResource);
 }
 
 // As prlimit demands it of who asks about another process.

@@ -126,9 +126,7 @@ std::int64_t RawTimers::Set(Task& task, const Found& found, const TrappedCall& c
   const bool is_absolute = (call.args[1] & kAbsolute) != 0;
   const bool is_of_time = kind.clock == shm::TimerClock::kTime;
   const bool is_real = is_of_time && kind.clock_tid != 0;
-  const std::int64_t offset = is_real      ? run_.header->realtime_offset_ns.load()
-                              : is_of_time ? run_.header->monotonic_offset_ns
-                                           : 0;
+  const std::int64_t offset = is_of_time ? run_.OffsetOf(is_real) : 0;
   const std::int64_t first =
       shm::FirstExpiry(ToNs(given.it_value), is_absolute, NowOf(task, *found.owner, kind), offset);
   const itimerspec before =

@@ -21,7 +21,7 @@ constexpr int kTimerAbsolute = 1;  // TIMER_ABSTIME
 
 std::int64_t RawTimes::ReadClock(const Task& task, const TrappedCall& call) const {
   const std::int64_t now = OwnNow(task).ns();
-  const std::int64_t real = now + run_.header->realtime_offset_ns;
+  const std::int64_t real = now + run_.OffsetOf(true);
   if (call.number == SYS_gettimeofday) {
     constexpr struct timezone kNone {};
     const bool has_time = call.args[0] == 0 || Write(task, call.args[0], shm::ToTimeval(real));
@@ -33,8 +33,7 @@ std::int64_t RawTimes::ReadClock(const Task& task, const TrappedCall& call) cons
   }
   const shm::ClockOfId clock = shm::ClockOf(static_cast<clockid_t>(call.args[0]));
   if (!clock.IsOfTime()) return -EINVAL;
-  const bool is_real = clock.kind == shm::ClockKind::kRealtime;
-  const std::int64_t shown = is_real ? real : now + run_.header->monotonic_offset_ns;
+  const std::int64_t shown = now + run_.OffsetOf(clock.kind == shm::ClockKind::kRealtime);
   return Write(task, call.args[1], ToTimespec(shown)) ? 0 : -EFAULT;
 }
 
@@ -61,11 +60,7 @@ std::int64_t RawTimes::Adjust(const Task& task, const TrappedCall& call) const {
   if (state.modes != 0) return -EPERM;
   const int how = adjtimex(&state);
   if (how < 0) return -errno;
-  const std::int64_t now = OwnNow(task).ns() + run_.header->realtime_offset_ns;
-  const std::int64_t fraction = now % shm::kNsPerSecond;
-  state.time = {now / shm::kNsPerSecond,
-                (state.status & STA_NANO) != 0 ? fraction : fraction / 1000};
-  state.freq = state.offset = 0;
+  shm::ShowUndisciplined(OwnNow(task).ns() + run_.OffsetOf(true), &state);
   return Write(task, to, state) ? how : -EFAULT;
 }
 
@@ -80,9 +75,8 @@ std::int64_t RawTimes::Sleep(Task& task, const TrappedCall& call) {
   VirtualTime until = AtMostNever(task.reached, VirtualNs(ToTimeoutNs(request)));
   const bool is_date = absolute && shm::ClockOf(clock).kind == shm::ClockKind::kRealtime;
   if (absolute) {
-    const std::int64_t offset =
-        is_date ? run_.header->realtime_offset_ns.load() : run_.header->monotonic_offset_ns;
-    until = task.process->clock.RobotTimeOf(OwnTime(ToTimeoutNs(request) - offset));
+    const ProgramTime own = OwnTime(ToTimeoutNs(request) - run_.OffsetOf(is_date));
+    until = task.process->clock.RobotTimeOf(own);
   }
   const std::uint64_t remaining_address = absolute ? 0 : call.args[plain ? 1 : 3];
   waker_.Wait(task, {.what = awaited::Time{.remaining_address = remaining_address},

@@ -12,9 +12,7 @@ namespace {
 
 bool ignores_lack_of_real_time_limit = false;
 
-bool IsPrivileged(const Credentials& credentials) {
-  return (credentials.capabilities >> CAP_SYS_NICE & 1) != 0;
-}
+bool IsPrivileged(const Credentials& credentials) { return credentials.Has(CAP_SYS_NICE); }
 
 bool IsSameOwner(const Credentials& asking, pid_t tid) {
   const Credentials owner = ReadCredentials(tid);

@@ -24,8 +24,8 @@ class SignalWakes {
   // The kernel has chosen the thread that handles a signal for the whole process, and has woken it.
   // A thread that sleeps on goes on waiting, whatever is pending.
   void WakeForSignals(Process& process, Moment moment);
-  // The same where no other signal can have come to the process. What has a handler reaches one
-  // thread: others are not asked.
+  // The same for one signal of which its sender tells. What has a handler reaches one thread:
+  // others are not asked.
   void WakeForSignal(Process& process, const SentSignal& sent, Moment moment);
   // Without levels the kernel keeps a signal from a thread whose call is trapped (os/trap.cc), so
   // only a look finds one that came from outside. One from inside is told by its sender.

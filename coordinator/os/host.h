@@ -110,6 +110,8 @@ SignalSets ReadSignalSets(pid_t tid);
 struct Credentials {
   uid_t real_uid = 0, effective_uid = 0;
   std::uint64_t capabilities = 0;
+
+  bool Has(int capability) const { return (capabilities >> capability & 1) != 0; }
 };
 Credentials ReadCredentials(pid_t tid);
 

@@ -56,14 +56,9 @@ const char* SlotCheck::WhatIsImpossible(const shm::Notification& note) {
   using Kind = shm::NotificationKind;
   const auto kind = static_cast<std::uint32_t>(note.kind);
   const bool is_known = kind >= static_cast<std::uint32_t>(Kind::kHorizon) &&
-                        kind <= static_cast<std::uint32_t>(Kind::kKernelWait) && kind != 16 &&
+                        kind <= static_cast<std::uint32_t>(Kind::kSetDate) && kind != 16 &&
                         note.kind != Kind::kResumed;
-  if (!is_known && note.kind != Kind::kPassOn && note.kind != Kind::kCall &&
-      note.kind != Kind::kPreempted && note.kind != Kind::kBinds && note.kind != Kind::kReaches &&
-      note.kind != Kind::kSignals && note.kind != Kind::kChildUsage &&
-      note.kind != Kind::kCounterReads && note.kind != Kind::kOutside &&
-      note.kind != Kind::kSpins && note.kind != Kind::kSetDate)
-    return "a notification of no kind";
+  if (!is_known) return "a notification of no kind";
   if (note.fd_count > shm::kMaxWaitFds) return "a wait for too many descriptors";
   if (note.kind != Kind::kTimerCreate) return nullptr;
   shm::TimerKind timer;

@@ -55,6 +55,11 @@ struct RunState {
   StopRequest stop;
   VirtualTime grace_began = VirtualTime::Never();
 
+  // What CLOCK_REALTIME, or CLOCK_MONOTONIC, is ahead of virtual time.
+  std::int64_t OffsetOf(bool is_real) const {
+    return is_real ? header->realtime_offset_ns.load() : header->monotonic_offset_ns;
+  }
+
   bool IsFixed() const { return options.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options.sync == shm::Sync::kCallback; }
   // Without levels a thread that computes is told by a signal to stop.
