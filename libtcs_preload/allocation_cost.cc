@@ -22,7 +22,7 @@ constexpr int kSpins = 1000;
 // before its first call. Never attaches.
 GuestThread* Counted() {
   if (g_process->mode != ProcessState::kAttached) return nullptr;
-  GuestThread& thread = t_thread;
+  GuestThread& thread = OwnState();
   const bool is_counted =
       thread.slot != nullptr && !thread.attaching && thread.slot->clock.counts_work != 0;
   return is_counted ? &thread : nullptr;

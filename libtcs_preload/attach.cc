@@ -200,6 +200,8 @@ void Attach(GuestThread& thread) {
   if (received.reply.slot >= shm::kSlotCount) DieWithoutCoordinator("it gave a wrong slot");
   thread.slot = g_slots + received.reply.slot;
   thread.index = received.reply.slot;
+  thread.pid = static_cast<std::int32_t>(RawSyscall(SYS_getpid));
+  thread.tid = static_cast<std::int32_t>(RawSyscall(SYS_gettid));
   AllowPreemption();
   thread.slot->spin.can_be_asked = OwnSignals() != 0 ? 1 : 0;
   if (is_first && g_header->has_porters != 0) MakePorter();

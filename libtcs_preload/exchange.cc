@@ -191,7 +191,7 @@ bool WaitAtGate(shm::ThreadSlot& slot, HandlersBefore handlers, const Charged& c
     }
     // One that begins after this look shuts the gate anew (NoteHandler), and the kernel does not
     // wait.
-    if (handlers != nullptr && t_thread.handlers != *handlers) return false;
+    if (handlers != nullptr && OwnState().handlers != *handlers) return false;
     const long result =
         RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting, Arg(&kGateTurn));
     if (result == 0 && !OnlyCpuClockTells(slot.clock) && !RunsBeside(slot)) {

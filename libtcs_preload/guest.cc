@@ -49,21 +49,21 @@ int g_notify_fd = -1;
 int g_porter_fd = -1;
 
 GuestThread* CurrentSlow() {
-  if (g_process->mode == ProcessState::kPassThrough || t_thread.attaching) return nullptr;
+  GuestThread& thread = OwnState();
+  if (g_process->mode == ProcessState::kPassThrough || thread.attaching) return nullptr;
   if (SocketName() == nullptr) {
     if (EnvironmentRemembered()) g_process->mode = ProcessState::kPassThrough;
     return nullptr;
   }
-  t_thread = GuestThread{};
-  t_thread.attaching = true;
-  Attach(t_thread);
-  t_thread.attaching = false;
+  thread = GuestThread{};
+  thread.attaching = true;
+  Attach(thread);
+  thread.attaching = false;
   g_process->mode = ProcessState::kAttached;
-  SeedProcess(*t_thread.slot);
-  if (t_thread.slot->patch_vdso != 0) PatchVdso();
-  LeadReads(
-      {.counter = t_thread.slot->leads_counter != 0, .pauses = t_thread.slot->spin_gap_ns != 0});
-  return &t_thread;
+  SeedProcess(*thread.slot);
+  if (thread.slot->patch_vdso != 0) PatchVdso();
+  LeadReads({.counter = thread.slot->leads_counter != 0, .pauses = thread.slot->spin_gap_ns != 0});
+  return &thread;
 }
 
 void Charge(shm::ClockPage& page, std::int64_t cost_ns) {

@@ -26,7 +26,8 @@ inline constexpr int kNoCoordinatorExit = 127;
 struct GuestThread {
   shm::ThreadSlot* slot = nullptr;
   std::uint32_t index = 0;
-  int depth = 0;  // exchanges under way; above 1 in a handler that interrupted one
+  std::int32_t pid = 0, tid = 0;  // of the attached thread, as it finds them itself
+  int depth = 0;                  // exchanges under way; above 1 in a handler that interrupted one
   bool attaching = false;
   std::uint32_t handlers = 0;  // of the program's that have begun in it
   // Since it last waited for its turn (exchange.h) it has begun a call; where the thread's own
@@ -68,11 +69,24 @@ extern int g_porter_fd;  // the porter's connection, likewise; -1: there are non
 // Attaches the process or thread if it is not yet; null: let the call through.
 GuestThread* CurrentSlow();
 
-// The calling thread if it is attached, else null; attaches nobody. A child by fork or by a bare
-// clone still has its parent's slot in `t_thread`, but not that slot's memory.
+// The calling thread's state where other threads find the same `t_thread`: those that were made by
+// the system call without CLONE_SETTLS have their maker's thread-local storage
+// (shared_storage.cc).
+GuestThread& StateInSharedStorage();
+
+// The calling thread's own state. A child by fork or by a bare clone still has its parent's slot in
+// `t_thread`, but not that slot's memory.
+inline GuestThread& OwnState() {
+  const bool is_shared = g_process->mode == ProcessState::kAttached && t_thread.slot != nullptr &&
+                         t_thread.slot->clock.shares_storage.load(std::memory_order_relaxed) != 0;
+  return __builtin_expect(is_shared, 0) ? StateInSharedStorage() : t_thread;
+}
+
+// The calling thread if it is attached, else null; attaches nobody.
 inline GuestThread* IfAttached() {
-  const bool is_attached = g_process->mode == ProcessState::kAttached && t_thread.slot != nullptr;
-  return __builtin_expect(is_attached, 1) ? &t_thread : nullptr;
+  GuestThread& thread = OwnState();
+  const bool is_attached = g_process->mode == ProcessState::kAttached && thread.slot != nullptr;
+  return __builtin_expect(is_attached, 1) ? &thread : nullptr;
 }
 
 // The calling thread, attached; null where calls are to be let through.

@@ -47,7 +47,7 @@ void StopHere(int signal, siginfo_t* info, void* context) {
     if (g_libcs != nullptr) g_libcs(signal, info, context);
     return;
   }
-  if (t_thread.attaching) return;
+  if (OwnState().attaching) return;
   // The thread, or its process, was made past the shim and computes: it goes to the gate by
   // attaching.
   GuestThread* const attached = IfAttached();

@@ -59,7 +59,7 @@ bool HasWaited() {
 // What the kernel runs for every handler of the program's.
 void OnSignal(int signal, siginfo_t* info, void* context) {
   const Wanted wanted = g_wanted[signal].load();
-  NoteHandler(t_thread);
+  NoteHandler(OwnState());
   InterruptedCall call(*static_cast<ucontext_t*>(context));
   if (call.IsMadeAgain()) {
     const EndBySignal end = call.HowItEnds();

@@ -37,7 +37,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 28;
+inline constexpr std::uint32_t kVersion = 29;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -254,7 +254,9 @@ struct ClockPage {
   // Written by the coordinator at each dispatch: of each allocation (set_costs.h); 0 under measured
   // accounting.
   std::int64_t allocation_cost_ns;
-  std::uint64_t counts_work;  // not 0: the thread keeps its WorkCounts; kBeginsInCall
+  std::uint32_t counts_work;  // not 0: the thread keeps its WorkCounts; kBeginsInCall
+  // Written by the coordinator, once: 1: others have the thread's storage (shared_storage.h).
+  std::atomic<std::uint32_t> shares_storage;
   // Nothing is produced before this any more in sockets that are local to the robot.
   std::int64_t local_read_safe_ns;
   // Written by the thread, and by the coordinator at each dispatch: what the thread was charged
@@ -265,6 +267,7 @@ static_assert(sizeof(ClockPage) == 192);
 static_assert(offsetof(ClockPage, staleness_ns) == 152);
 static_assert(offsetof(ClockPage, allocation_cost_ns) == 160);
 static_assert(offsetof(ClockPage, counts_work) == 168);
+static_assert(offsetof(ClockPage, shares_storage) == 172);
 static_assert(offsetof(ClockPage, local_read_safe_ns) == 176);
 static_assert(offsetof(ClockPage, executed_adjust) == 64);
 static_assert(offsetof(ClockPage, last_shown_ns) == 80);

@@ -147,7 +147,8 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
     const bool of_timer = timers_.Find(task, number).owner != nullptr;
     if (of_timer || !fd.IsEventFd()) activations_.ReceivedRaw(task, of_timer);
   }
-  if (fd.IsNonBlocking() || fd.IsReady(events) || AnswersAtOnce(task, call, fd, transfer)) {
+  const bool is_ready = fd.IsReady(events) || (!transfer.reads && fd.HasRoom());
+  if (is_ready || fd.IsNonBlocking() || AnswersAtOnce(task, call, fd, transfer)) {
     waker_.HoldInCall(
         task, transfer.reads ? shm::NotificationKind::kRead : shm::NotificationKind::kWrite);
     return;

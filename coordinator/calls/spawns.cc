@@ -32,6 +32,8 @@ bool Spawns::IsAnnounced(const Task& maker) {
 void Spawns::Begin(Task& maker, const TrappedCall& call) {
   const auto made = ReadCloneCall(call);
   if (!made.has_value()) return;
+  const bool runs_beside = !made->HasOwnStorage() && !made->WaitsForChild();
+  if (runs_beside && maker.slot >= 0) SlotOf(maker).clock.shares_storage = 1;
   if (maker.births.size() >= kMostBirths) maker.births.clear();
   const bool is_announced = IsAnnounced(maker);
   maker.births.push_back({*made, is_announced});

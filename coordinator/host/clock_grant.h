@@ -16,7 +16,7 @@ struct ClockGrant {
   std::int64_t local_read_safe_ns = 0;
   std::uint64_t ns_per_host_ns_q32 = 0, check_after_ticks = 0;
   std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
-  std::uint64_t counts_work = 0;
+  std::uint32_t counts_work = 0;
   std::int64_t most_idle_ns = 0;   // of this dispatch
   std::int64_t most_shown_ns = 0;  // of all dispatches
   std::int64_t most_stale_ns = 0;  // of all

@@ -1,6 +1,7 @@
 #include "coordinator/tasks/borrowed.h"
 
 #include <fcntl.h>
+#include <linux/sock_diag.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <stdio.h>
@@ -8,6 +9,8 @@
 #include <sys/stat.h>
 #include <sys/time.h>
 #include <unistd.h>
+
+#include <algorithm>
 
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
@@ -39,6 +42,18 @@ void Borrowed::AcknowledgeAtOnce() const {
 bool Borrowed::IsReady(short events) const {
   pollfd probe{fd(), events, 0};
   return poll(&probe, 1, 0) != 0;
+}
+
+bool Borrowed::HasRoom() const {
+  std::uint32_t memory[SK_MEMINFO_VARS] = {};
+  socklen_t size = sizeof memory;
+  if (getsockopt(fd(), SOL_SOCKET, SO_MEMINFO, memory, &size) != 0) return false;
+  const std::uint64_t whole = memory[SK_MEMINFO_SNDBUF];
+  const std::uint64_t used =
+      std::max(memory[SK_MEMINFO_WMEM_ALLOC], memory[SK_MEMINFO_WMEM_QUEUED]);
+  // With less than a quarter used it is for something else that poll says no: there is no
+  // connection yet, or no room where datagrams arrive (unix_writable has the quarter, others more).
+  return used * 4 > whole && used < whole;
 }
 
 bool Borrowed::IsEventFd() const { return IsAnonymous(getpid(), fd(), kEventFd); }

@@ -29,6 +29,9 @@ class Borrowed {
   bool CanWait() const;
   bool IsNonBlocking() const;
   bool IsReady(short events) const;
+  // Whether a socket takes a write though poll says that it is not ready: poll says so once much
+  // of the buffer is used, a write waits once all of it is.
+  bool HasRoom() const;
   bool IsEventFd() const;
   bool IsTimer() const;
   bool IsTerminal() const;

@@ -6,6 +6,8 @@
 #include <sys/un.h>
 #include <sys/wait.h>
 
+#include <vector>
+
 #include "tests/conformance/conformance.h"
 
 namespace {
@@ -31,6 +33,16 @@ void Meanwhile(const char* what, Later later, Wait wait) {
 }
 
 char g_buffer[4096];
+
+// Past the C library, and so past the shim.
+long RawWrite(int fd, const void* bytes, std::size_t size) {
+  long result;
+  __asm__ volatile("syscall"
+                   : "=a"(result)
+                   : "a"(SYS_write), "D"(fd), "S"(bytes), "d"(size)
+                   : "rcx", "r11", "memory");
+  return result;
+}
 
 void Receives(int type) {
   int pair[2];
@@ -106,6 +118,31 @@ void Sends() {
   close(pair[1]);
 }
 
+// A write waits once all of the buffer is used; poll says that there is no room long before.
+void FillsItsBuffer(int type) {
+  int pair[2];
+  EXPECT(socketpair(AF_UNIX, type, 0, pair) == 0, "socketpair");
+  int size = 0;
+  socklen_t length = sizeof size;
+  EXPECT(getsockopt(pair[1], SOL_SOCKET, SO_SNDBUF, &size, &length) == 0, "SO_SNDBUF");
+  const auto half = static_cast<std::size_t>(size) / 2;
+  std::vector<char> bytes(half);
+  const auto write_raw = [&] {
+    EXPECT(RawWrite(pair[1], bytes.data(), half) == static_cast<long>(half), "%d", type);
+  };
+  const std::int64_t start = Now();
+  write_raw();
+  write_raw();
+  ExpectSoonAfter(start, 0, "two halves of a buffer");
+  const auto drain = [&] {
+    while (recv(pair[0], bytes.data(), half, MSG_DONTWAIT) > 0) {
+    }
+  };
+  Meanwhile("a third half", drain, write_raw);
+  close(pair[0]);
+  close(pair[1]);
+}
+
 void Connections(int number) {
   const int listener = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -168,6 +205,7 @@ int main(int argc, char** argv) {
   Receives(SOCK_STREAM);
   Receives(SOCK_DGRAM);
   Sends();
+  for (const int type : {SOCK_STREAM, SOCK_DGRAM, SOCK_SEQPACKET}) FillsItsBuffer(type);
   Connections(SYS_accept);
   Connections(SYS_accept4);
   Interrupted(0, false);

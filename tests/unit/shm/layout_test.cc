@@ -12,7 +12,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 28u);
+  EXPECT_EQ(kVersion, 29u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 5376u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -29,6 +29,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);
   EXPECT_EQ(offsetof(ClockPage, allocation_cost_ns), 160u);
   EXPECT_EQ(offsetof(ClockPage, counts_work), 168u);
+  EXPECT_EQ(offsetof(ClockPage, shares_storage), 172u);
   EXPECT_EQ(offsetof(ClockPage, local_read_safe_ns), 176u);
   EXPECT_EQ(offsetof(ThreadSlot, note), 192u);
   EXPECT_EQ(offsetof(ThreadSlot, gate), 504u);

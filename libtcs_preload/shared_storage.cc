@@ -1,0 +1,62 @@
+// Threads that find another's thread-local storage as theirs.
+//
+// A thread that is made by the system call without CLONE_SETTLS has its maker's storage, and with
+// it the maker's GuestThread: both would speak through one slot. Such a thread may not call most of
+// the C library, natively, either; but it may make system calls by it. The coordinator sees it
+// made, and says so in the maker's clock page before the thread runs. From then on whoever finds
+// that page is told apart by its number.
+#include <errno.h>
+
+#include <atomic>
+
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/raw_syscall.h"
+
+namespace tcs::preload {
+
+namespace {
+
+constexpr int kMostSharers = 64;  // that live at a time; the others' calls are let through
+
+constexpr std::int32_t kNobody = 0, kAboutToBe = -1;
+
+struct Sharer {
+  std::atomic<std::int32_t> tid;  // whose `state` is; else kNobody, kAboutToBe
+  GuestThread state;
+};
+
+Sharer g_sharers[kMostSharers];
+GuestThread g_nobody{.attaching = true};  // attaches never
+
+bool HasEnded(std::int32_t pid, std::int32_t tid) {
+  return RawSyscall(SYS_tgkill, pid, tid, 0) == -ESRCH;
+}
+
+// Null: all places are taken.
+GuestThread* Claim(std::int32_t pid, std::int32_t tid) {
+  for (Sharer& sharer : g_sharers) {
+    std::int32_t before = sharer.tid.load();
+    const bool is_free = before == kNobody || (before != kAboutToBe && HasEnded(pid, before));
+    if (!is_free || !sharer.tid.compare_exchange_strong(before, kAboutToBe)) continue;
+    sharer.state = GuestThread{};
+    sharer.tid = tid;
+    return &sharer.state;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+GuestThread& StateInSharedStorage() {
+  const auto tid = static_cast<std::int32_t>(RawSyscall(SYS_gettid));
+  if (tid == t_thread.tid) return t_thread;
+  for (Sharer& sharer : g_sharers) {
+    if (sharer.tid.load() == tid) return sharer.state;
+  }
+  // A process that shares the memory has a slot in another place, which is not mapped here.
+  const auto pid = static_cast<std::int32_t>(RawSyscall(SYS_getpid));
+  GuestThread* const claimed = pid == t_thread.pid ? Claim(pid, tid) : nullptr;
+  return claimed != nullptr ? *claimed : g_nobody;
+}
+
+}  // namespace tcs::preload
