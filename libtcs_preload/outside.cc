@@ -148,6 +148,22 @@ void NoteTakes(GuestThread& thread, int fd) {
   if (OutsideOf(fd) != nullptr) Tell(thread, OutsideEvent::kTakes, fd);
 }
 
+void EndIoctl() {
+  GuestThread* t = IsAnythingOutside() ? IfAttached() : nullptr;
+  if (t == nullptr) return;
+  OutsidePlace* place =
+      shm::OutsidePlaceOf(shm::OutsideFilesOf(*g_run), shm::OutsideCallKey(t->slot->tid));
+  if (place == nullptr) return;
+  const int error = errno;
+  if (place->seen_from_ns.load() == shm::kOutsideUnknown) Tell(*t, OutsideEvent::kReturns, -1);
+  for (;;) {
+    const std::int64_t from = place->seen_from_ns.load();
+    if (from >= shm::kOutsideUnknown || from <= NowNs(*t) || IsShutDown()) break;
+    SleepUntil(*t, from);
+  }
+  errno = error;
+}
+
 void NoteCloses(int fd) {
   if (OutsideOf(fd) == nullptr) return;
   if (GuestThread* t = Current(); t != nullptr) Tell(*t, OutsideEvent::kCloses, fd);

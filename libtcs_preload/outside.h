@@ -68,4 +68,7 @@ void NoteAsks(GuestThread& thread, int fd, std::uint64_t begun_tsc);
 void NoteTakes(GuestThread& thread, int fd);
 void NoteCloses(int fd);
 
+// An ioctl is over: if it had to wait for what is outside, this returns when that is to be seen.
+void EndIoctl();
+
 }  // namespace tcs::preload

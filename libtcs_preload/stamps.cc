@@ -9,6 +9,7 @@
 
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/outside.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/virtual_clock.h"
 
@@ -72,13 +73,15 @@ void ReplaceStamps(msghdr* message) {
 
 }  // namespace tcs::preload
 
-// Of what was received last.
+// SIOCGSTAMP is of what was received last; devices compute by themselves, and their calls wait for
+// that.
 TCS_EXPORT int ioctl(int fd, unsigned long request, ...) noexcept {
   va_list arguments;
   va_start(arguments, request);
   void* argument = va_arg(arguments, void*);
   va_end(arguments);
   const long result = RawSyscall(SYS_ioctl, fd, static_cast<long>(request), Arg(argument));
+  EndIoctl();
   if (result == 0 && (request == SIOCGSTAMP_OLD || request == SIOCGSTAMPNS_OLD ||
                       request == SIOCGSTAMP_NEW || request == SIOCGSTAMPNS_NEW)) {
     if (GuestThread* t = Current(); t != nullptr) {

@@ -21,6 +21,7 @@ enum class OutsideEvent : std::int64_t {
   kLooks = 3,     // it is about to look whether something is there: go on as with kRead
   kTakes = 4,     // it has taken what was there
   kCloses = 5,    // it is about to close it
+  kReturns = 6,   // an ioctl that waits for such a file is over; args[1]: -1
 };
 
 struct OutsideFiles {
@@ -53,6 +54,11 @@ inline std::uint64_t OutsideKeyOf(const struct stat& status) {
   const std::uint64_t mixed =
       ((status.st_dev * 0x9e3779b97f4a7c15) ^ status.st_ino) & kOutsideKeyMask;
   return mixed != 0 ? mixed : kOutsideKeyMask;
+}
+
+// Not a file's: what the thread, by its number on the host, waits for within a call.
+inline std::uint64_t OutsideCallKey(std::int32_t tid) {
+  return kOutsideSocket | kOutsideDevice | static_cast<std::uint32_t>(tid);
 }
 
 // Of the file; null: it is not among them.

@@ -15,6 +15,7 @@
 #include <system_error>
 #include <vector>
 
+#include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/socket_tables.h"
 #include "coordinator/tasks/borrowed.h"
@@ -29,6 +30,9 @@ constexpr VirtualDuration kGrain = VirtualDuration::Microseconds(100);
 
 // From when something has been found to when its time is taken.
 constexpr VirtualDuration kFound = VirtualDuration::Microseconds(20);
+
+// Drivers have many calls that wait for a moment: for each other, or for a lock.
+constexpr HostDuration kShortCall = HostDuration::Microseconds(100);
 
 // What a program says of itself is believed so far.
 constexpr HostDuration kLongestNews = HostDuration::Seconds(1);
@@ -137,6 +141,10 @@ void OutsideWaits::ShowFrom(File& file, std::int64_t ns) {
 OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& note) {
   if (published_ == nullptr) return Next::kGoesOn;
   const auto event = static_cast<shm::OutsideEvent>(note.args[0]);
+  if (event == shm::OutsideEvent::kReturns) {
+    CallReturns(task, task.reached);
+    return Next::kGoesOn;
+  }
   const UniqueFd copy = CopyOfDescriptor(*task.process, static_cast<int>(note.args[1]));
   if (!copy) return Next::kGoesOn;
   if (event == shm::OutsideEvent::kConnects) {
@@ -166,6 +174,7 @@ OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& not
       break;
     case shm::OutsideEvent::kConnects:
     case shm::OutsideEvent::kLooks:
+    case shm::OutsideEvent::kReturns:
       break;
   }
   return Next::kGoesOn;
@@ -296,6 +305,39 @@ void OutsideWaits::Await(File& file, const Task& task, int fd) {
   ++awaited_;
 }
 
+// Each thread's call is waited for on its own, as if it were a file.
+OutsideWaits::InCall OutsideWaits::LookIntoCall(const Task& task, HostDuration used) {
+  if (published_ == nullptr || files_.empty()) return InCall::kNo;
+  const std::optional<int> number = DescriptorOfIoctl(task.tid);
+  const UniqueFd copy = number.has_value() ? CopyOfDescriptor(*task.process, *number) : UniqueFd();
+  const File* device = copy ? FileOf(copy.get()) : nullptr;
+  if (device == nullptr || !device->is_always) return InCall::kNo;
+  File* call = Publish(shm::OutsideCallKey(task.tid), device->name, false, task.process);
+  if (call == nullptr) return InCall::kNo;
+  if (call->is_awaited) return InCall::kWaits;
+  const HostTime now = clock_();
+  if (std::exchange(call->used, used) != used) call->asked_real = now;
+  const HostDuration so_far = now - call->asked_real;
+  if (so_far < kShortCall) return InCall::kMayWait;
+  call->has_outlasted = false;
+  Ask(*call, task, so_far);
+  call->is_awaited = true;
+  ++awaited_;
+  return InCall::kWaits;
+}
+
+void OutsideWaits::CallBegan(const Task& task) {
+  if (files_.empty()) return;
+  File* call = Find(shm::OutsideCallKey(task.tid));
+  if (call != nullptr && call->state == State::kAsked) call->asked_at = task.reached;
+}
+
+void OutsideWaits::CallReturns(const Task& task, VirtualTime at) {
+  File* call = files_.empty() ? nullptr : Find(shm::OutsideCallKey(task.tid));
+  if (call == nullptr || call->state != State::kAsked || !call->is_awaited) return;
+  HasCome(*call, clock_(), at);
+}
+
 void OutsideWaits::Unwatch(File& file) {
   if (file.copy) reactor_.Remove(file.copy.get());
   file.copy.Reset();
@@ -314,6 +356,10 @@ void OutsideWaits::HasCome(const Subject& subject, HostTime now, VirtualTime at)
   if (subject.index >= files_.size()) return;
   File& file = files_[subject.index];
   if (file.state != State::kAsked || !file.is_awaited || file.number != subject.number) return;
+  HasCome(file, now, at);
+}
+
+void OutsideWaits::HasCome(File& file, HostTime now, VirtualTime at) {
   Unwatch(file);
   const VirtualDuration took = run_.IsFixed()
                                    ? SpecOf(*file.process).outside.takes

@@ -9,8 +9,8 @@
 // time stands at its end until it is there.
 //
 // A request is the first sending by such a socket since the program last took something from it;
-// of devices and of what is named, the beginning of a wait or a look. Who outlasts
-// `outside.patience` is not waited for until it is heard again.
+// of devices and of what is named, the beginning of a wait or a look, or of an ioctl that waits.
+// Who outlasts `outside.patience` is not waited for until it is heard again.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -59,6 +59,16 @@ class OutsideWaits {
   // look again.
   bool TakeRested() { return std::exchange(has_rested_, false); }
 
+  // The thread, which has its turn, stands in the kernel, and has used so much processor time.
+  // kWaits: in an ioctl of a device, or of a file that is named; until it says that this is over,
+  // it waits for what is outside, from where its turn ends (CallBegan). kMayWait: the same, but it
+  // has not been there for long.
+  enum class InCall { kNo, kMayWait, kWaits };
+  InCall LookIntoCall(const Task& task, HostDuration used);
+  void CallBegan(const Task& task);
+  // It is over, and seen at the virtual time `at`.
+  void CallReturns(const Task& task, VirtualTime at);
+
   // Something has come, and was found at the virtual time `at`.
   void HasCome(const Subject& subject, HostTime now, VirtualTime at);
 
@@ -93,6 +103,7 @@ class OutsideWaits {
     bool is_bare = false;  // nothing of it is hidden
     VirtualTime asked_at, seen_from;
     HostTime asked_real;
+    HostDuration used;         // of a call: by its thread, when it was first found in it
     UniqueFd copy;             // watched while it is awaited
     std::uint32_t number = 0;  // of the watch
   };
@@ -111,6 +122,7 @@ class OutsideWaits {
   void Ask(File& file, const Task& task, HostDuration ago = {});
   void Await(File& file, const Task& task, int fd);
   void Unwatch(File& file);
+  void HasCome(File& file, HostTime now, VirtualTime at);
   void Rest(File& file);
   void GiveUp(File& file);
   bool MayMeetOutside(const Process& process) const;

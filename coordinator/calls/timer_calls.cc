@@ -145,6 +145,7 @@ bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& n
 bool TimerCalls::BringUpToDate(Process& owner, const Task& asking, std::int64_t id) {
   if (!owner.timers.IsBehind(id, asking.reached)) return false;
   const Moment moment{asking.reached};
+  signals_.NoteDropped(owner, moment.at);
   const bool wrote = Expire(owner, moment.at);
   if (owner.timers.HasSignals()) signals_.Route(owner, moment);
   return wrote;
@@ -189,6 +190,7 @@ bool TimerCalls::FireDue(Robot& robot, VirtualTime now) {
     if (process.timers.NextExpiry() <= now) {
       if (!process.closed_timers.empty()) DeleteClosed(process);
       process.expired = process.timers.NextExpiry();
+      signals_.NoteDropped(process, now);
       wrote |= Expire(process, now);
     }
     if (process.timers.HasSignals()) signals_.Route(process, moment);

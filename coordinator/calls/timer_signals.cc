@@ -71,10 +71,9 @@ Task* TimerSignals::TakerOf(const Process& process, const TimerSignal& signal) c
   return taker == nullptr || taker->state == TaskState::kUnseen ? nullptr : taker;
 }
 
-bool TimerSignals::IsLost(const Process& process, const TimerSignal& signal) const {
-  Task* receiver = run_.table.Living(signal.tid != 0 ? signal.tid : process.pid);
-  return receiver != nullptr &&
-         (LostOf(SignalsOf(run_, *receiver)) & SignalBit(signal.number)) != 0;
+bool TimerSignals::IsLost(const Process& process, int number, pid_t tid) const {
+  Task* receiver = run_.table.Living(tid != 0 ? tid : process.pid);
+  return receiver != nullptr && (LostOf(SignalsOf(run_, *receiver)) & SignalBit(number)) != 0;
 }
 
 void TimerSignals::Route(Process& process, Moment moment) {
@@ -84,7 +83,7 @@ void TimerSignals::Route(Process& process, Moment moment) {
       const pid_t accepter = AccepterOf(process, signal);
       Task* taker = accepter != 0 ? nullptr : TakerOf(process, signal);
       if (taker == nullptr) {
-        const bool is_lost = accepter == 0 && IsLost(process, signal);
+        const bool is_lost = accepter == 0 && IsLost(process, signal.number, signal.tid);
         Send(process, signal, accepter != 0 ? accepter : signal.tid);
         if (is_lost) process.timers.Lost(signal.timer_id);
         sent = true;
@@ -116,6 +115,13 @@ void TimerSignals::SendTo(const Task& task) {
 void TimerSignals::NoteAccepted(Process& process) {
   for (const ProcessTimers::SentSignal& sent : process.timers.SentSignals()) {
     if (!MayBePending(process, sent)) process.timers.Accept(sent.timer_id);
+  }
+}
+
+void TimerSignals::NoteDropped(Process& process, VirtualTime now) const {
+  for (const ProcessTimers::SentSignal& sent : process.timers.SentSignals()) {
+    const bool is_dropped = !MayBePending(process, sent) && IsLost(process, sent.number, sent.to);
+    if (is_dropped) process.timers.AcceptAt(sent.timer_id, now, false);
   }
 }
 

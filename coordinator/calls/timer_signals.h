@@ -25,6 +25,9 @@ class TimerSignals {
   // Finds out which timers' signals have been accepted. While one of a signal's number is pending
   // where it was sent to it counts as not: whose it is cannot be seen.
   static void NoteAccepted(Process& process);
+  // The kernel itself has accepted what did nothing once it was no longer blocked. Goes before
+  // NoteAccepted: what has run out until `now` is such a signal's overruns.
+  void NoteDropped(Process& process, VirtualTime now) const;
   // Whether the timer's signal that was sent last may be pending still.
   static bool IsPending(const Process& process, std::int64_t timer_id);
 
@@ -32,7 +35,7 @@ class TimerSignals {
   static pid_t AccepterOf(const Process& process, const TimerSignal& signal);
   Task* TakerOf(const Process& process, const TimerSignal& signal) const;
   // Nobody will hear of it.
-  bool IsLost(const Process& process, const TimerSignal& signal) const;
+  bool IsLost(const Process& process, int number, pid_t tid) const;
 
   RunState& run_;
   Waker& waker_;

@@ -456,6 +456,7 @@ void Engine::EndTurn(Task& task) {
   host_cpu_.active().TakeBack();
   const VirtualTime start = task.cpu->progress;
   if (task.state != TaskState::kDead) Settle(task);
+  if (task.state == TaskState::kUnseen) outside_.CallBegan(task);
   if (spins_.TurnEnds(task, start)) ahead_.StayHome(task.process);
   CallFiles::NoteTurn(task);
   undispatched_.TurnEnds(task);

@@ -273,6 +273,7 @@ void Engine::PollUnseen() {
   for (Task& task : run_.table.tasks()) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
     run_.latest = std::max(run_.latest, task.reached);
+    outside_.CallReturns(task, run_.latest);
     waker_.Wake(task, shm::WakeReason::kGo, {run_.latest});
     task.parked = false;
     dds_.NoteWhetherStopped(*task.process, run_.latest);

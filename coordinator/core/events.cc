@@ -140,7 +140,16 @@ bool Engine::BlockedInKernel() {
   if (state == 'S' && task.parked) return true;
   if (state == 'S' && CutsOff(task)) return task.process->expelled;
   if (state == 't' && debugger_.IsOf(*task.process)) return false;  // and everybody with it
-  const bool stopped = state == 'T' || state == 't';                // until a signal, or its tracer
+  if (state == 'S' || state == 'D') {
+    const auto in_call = outside_.LookIntoCall(task, HostNs(HostClockOf(task)));
+    if (in_call == OutsideWaits::InCall::kMayWait) return false;
+    if (in_call == OutsideWaits::InCall::kWaits) {
+      waker_.SetState(task, TaskState::kUnseen);
+      task.parked = false;
+      return true;
+    }
+  }
+  const bool stopped = state == 'T' || state == 't';  // until a signal, or its tracer
   const bool in_vfork =
       state == 'D' && task.in_vfork && spawns_.HasMadeChild(task, {run_.WrittenAt()});
   if (!stopped && !in_vfork && (state != 'S' || task.slot < 0)) {

@@ -307,6 +307,14 @@ std::string ThreadSystemCall(pid_t tid) {
   return file >> number ? number : "unknown";
 }
 
+std::optional<int> DescriptorOfIoctl(pid_t tid) {
+  std::ifstream file("/proc/" + std::to_string(tid) + "/syscall");
+  long number = -1;
+  unsigned long descriptor = 0;
+  if (!(file >> number >> std::hex >> descriptor) || number != SYS_ioctl) return std::nullopt;
+  return static_cast<int>(descriptor);
+}
+
 std::string ProgramOf(pid_t pid) {
   std::error_code gone;
   const auto path = std::filesystem::read_symlink("/proc/" + std::to_string(pid) + "/exe", gone);

@@ -131,6 +131,9 @@ void SendTimerSignal(const TimerSignalRequest& request);
 // The number of the system call that a thread is in, as text; "unknown" if it is in none.
 std::string ThreadSystemCall(pid_t tid);
 
+// Of the ioctl that a thread stands in; nothing: it is in none.
+std::optional<int> DescriptorOfIoctl(pid_t tid);
+
 // The file that a process executes; "pid N" if that cannot be had.
 std::string ProgramOf(pid_t pid);
 

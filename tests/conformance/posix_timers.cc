@@ -166,6 +166,24 @@ void Overruns() {
   sigprocmask(SIG_SETMASK, &before, nullptr);
 }
 
+// The kernel accepts it once it is no longer blocked, and drops all that come after it.
+void OverrunsOfWhatDoesNothing() {
+  sigset_t set, before;
+  sigemptyset(&set);
+  sigaddset(&set, SIGCONT);
+  sigprocmask(SIG_BLOCK, &set, &before);
+  const timer_t timer = Create(CLOCK_MONOTONIC, BySignal(SIGCONT, 5));
+  constexpr std::int64_t kPeriod = 1'000;
+  Set(timer, 10 * kMs, kPeriod);
+  usleep(10'500);
+  sigprocmask(SIG_SETMASK, &before, nullptr);
+  const int overruns = timer_getoverrun(timer);
+  EXPECT(overruns >= 500, "%d overruns", overruns);
+  if (g_mode == Mode::kFixed) EXPECT(overruns < 530, "%d overruns", overruns);
+  if (g_mode == Mode::kMeasured) EXPECT(overruns < 5'000, "%d overruns", overruns);
+  timer_delete(timer);
+}
+
 void WithoutNotice() {
   sigevent none{};
   none.sigev_notify = SIGEV_NONE;
@@ -419,6 +437,7 @@ int main(int argc, char** argv) {
   BySignals();
   WhileComputing();
   Overruns();
+  OverrunsOfWhatDoesNothing();
   WithoutNotice();
   OnProcessorTime();
   Errors();
