@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <x86gprintrin.h>
 
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -71,7 +72,10 @@ void BeginLooks(GuestThread& thread, const pollfd* fds, unsigned long count) {
   constexpr unsigned long kMost = 1 << 20;
   if (!IsAnythingOutside() || count > kMost || !CanRead(fds, count * sizeof *fds)) return;
   for (unsigned long i = 0; i < count; ++i) {
-    if ((fds[i].events & POLLIN) != 0) IsHiddenFromLook(thread, fds[i].fd);
+    OutsidePlace* place = fds[i].events == 0 ? nullptr : OutsideOf(fds[i].fd);
+    const bool concerns =
+        place != nullptr && ((fds[i].events & POLLIN) != 0 || place->is_connecting.load() != 0);
+    if (concerns) IsHiddenFromLook(thread, fds[i].fd);
   }
 }
 
@@ -81,8 +85,13 @@ long WithoutHidden(GuestThread& thread, pollfd* fds, unsigned long count, long f
   constexpr auto kFromOutside =
       static_cast<short>(POLLIN | POLLRDNORM | POLLPRI | POLLRDHUP | POLLHUP | POLLERR);
   for (unsigned long i = 0; i < count; ++i) {
-    if ((fds[i].revents & kFromOutside) == 0 || !IsHidden(thread, OutsideOf(fds[i].fd))) continue;
-    fds[i].revents = static_cast<short>(fds[i].revents & ~kFromOutside);
+    if (fds[i].revents == 0) continue;
+    OutsidePlace* place = OutsideOf(fds[i].fd);
+    if (!IsHidden(thread, place)) continue;
+    const bool hides_room = place->is_connecting.load(std::memory_order_relaxed) != 0;
+    const auto hidden = static_cast<short>(kFromOutside | (hides_room ? POLLOUT | POLLWRNORM : 0));
+    if ((fds[i].revents & hidden) == 0) continue;
+    fds[i].revents = static_cast<short>(fds[i].revents & ~hidden);
     if (fds[i].revents == 0) --found;
   }
   return found;
@@ -133,11 +142,12 @@ bool IsDeviceOutside(const char* path) {
 }
 
 void NoteOpens(int fd) {
-  if (GuestThread* t = Current(); t != nullptr) Tell(*t, OutsideEvent::kConnects, fd);
+  if (GuestThread* t = Current(); t != nullptr) Tell(*t, OutsideEvent::kConnects, fd, __rdtsc());
 }
 
-void NoteConnects(GuestThread& thread, int fd) {
-  if (g_header->sync == shm::Sync::kConsistent) Tell(thread, OutsideEvent::kConnects, fd);
+void NoteConnects(GuestThread& thread, int fd, std::uint64_t begun_tsc) {
+  if (g_header->sync != shm::Sync::kConsistent) return;
+  Tell(thread, OutsideEvent::kConnects, fd, begun_tsc);
 }
 
 void NoteAsks(GuestThread& thread, int fd, std::uint64_t begun_tsc) {

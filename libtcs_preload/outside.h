@@ -63,7 +63,7 @@ void NoteOpens(int fd);
 
 // The program has connected the socket, or has begun to; has sent by it, and began that then; has
 // taken something from the file, or its end; is about to close it.
-void NoteConnects(GuestThread& thread, int fd);
+void NoteConnects(GuestThread& thread, int fd, std::uint64_t begun_tsc);
 void NoteAsks(GuestThread& thread, int fd, std::uint64_t begun_tsc);
 void NoteTakes(GuestThread& thread, int fd);
 void NoteCloses(int fd);

@@ -235,8 +235,10 @@ long ConnectLocally(GuestThread& t, int fd, const sockaddr* address, socklen_t s
 
 // The other end may be a while away.
 long ConnectFar(GuestThread& t, int fd, const sockaddr* address, socklen_t size) {
+  const std::uint64_t begun_tsc = __rdtsc();
   const long result = ConnectOnce(fd, address, size);
   if (result != -EINPROGRESS) return result;
+  NoteConnects(t, fd, begun_tsc);
   CallFile file(t, fd);
   const int saved = errno;
   const std::int64_t deadline = SocketDeadline(t, fd, SO_SNDTIMEO);
@@ -265,6 +267,7 @@ TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
     family = address->sa_family;
   }
   const bool is_internet = family == AF_INET || family == AF_INET6;
+  const std::uint64_t begun_tsc = __rdtsc();
   long result = 0;
   if (family == AF_UNIX && !IsNonBlocking(fd)) {
     result = ConnectLocally(*t, fd, address, size);
@@ -274,7 +277,7 @@ TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
     result = RawSyscall(SYS_connect, fd, Arg(address), size);
   }
   if ((is_internet || family == AF_UNIX) && (result == 0 || result == -EINPROGRESS)) {
-    NoteConnects(*t, fd);
+    NoteConnects(*t, fd, begun_tsc);
   }
   return static_cast<int>(ToErrno(result));
 }

@@ -16,7 +16,8 @@ namespace tcs::shm {
 
 // What the thread says in args[0] of NotificationKind::kOutside; args[1] is a descriptor.
 enum class OutsideEvent : std::int64_t {
-  kConnects = 1,  // it has been connected, or is being connected; or it is a device, and open now
+  kConnects = 1,  // it has been connected, or is being connected; or it is a device, and open now;
+                  // args[2]: the TSC before that
   kAsks = 2,      // the thread has sent by it; args[2]: the TSC before it did
   kLooks = 3,     // it is about to look whether something is there: go on as with kRead
   kTakes = 4,     // it has taken what was there
@@ -31,6 +32,9 @@ struct OutsideFiles {
     // From then on what has come is to be seen, on the robots' clock; kOutsideUnknown: that is not
     // known yet; kOutsideRests: nothing is waited for, and whoever looks begins to; 0: at once.
     std::atomic<std::int64_t> seen_from_ns;
+    // 1: a connection that is being made, which shows by that there is room to write.
+    std::atomic<std::uint32_t> is_connecting;
+    std::uint32_t reserved;
   };
   std::atomic<std::uint32_t> used;  // places; 0 as long as there is nothing outside
   std::uint32_t reserved;

@@ -17,6 +17,11 @@ bool IsReady(int fd, std::uint32_t events) {
   return poll(&probe, 1, 0) > 0;
 }
 
+// Of a file of which something is hidden.
+std::uint32_t SeenOf(OutsideWaits::Hidden hidden) {
+  return hidden == OutsideWaits::Hidden::kAll ? 0 : std::uint32_t{EPOLLOUT};
+}
+
 }  // namespace
 
 bool DescriptorWaits::Arm(int fd, std::uint32_t events, const Subject& subject,
@@ -32,12 +37,12 @@ void DescriptorWaits::Add(const Task& task, Copy copy, const Subject& subject,
                           awaited::Descriptors& watched) {
   if (!copy.fd) return;
   const bool is_waited_for = copy.asked.events != 0;  // or is kept for the call only
-  const bool is_hidden =
-      (copy.asked.events & EPOLLIN) != 0 && outside_.BeginsWait(task, copy.fd.get());
-  watched.has_hidden |= is_hidden;
   std::uint32_t events = copy.asked.events;
-  if (is_hidden) {
-    events &= EPOLLOUT;
+  const OutsideWaits::Hidden hidden =
+      is_waited_for ? outside_.BeginsWait(task, copy.fd.get(), events) : OutsideWaits::Hidden{};
+  if (hidden != OutsideWaits::Hidden::kNothing) {
+    watched.has_hidden = true;
+    events &= SeenOf(hidden);
     AddMembers(task, copy.fd.get(), subject, watched);
   }
   const bool is_armed = is_waited_for && events != 0;
@@ -115,9 +120,11 @@ void DescriptorWaits::BeginAgain(Task& task) {
   for (std::size_t i = 0; i < watched->fds.size(); ++i) {
     const int fd = watched->fds[i].get();
     const std::uint32_t asked = watched->asked[i].events;
-    if ((asked & EPOLLIN) == 0 || !outside_.BeginsWait(task, fd)) continue;
+    const OutsideWaits::Hidden hidden =
+        asked == 0 ? OutsideWaits::Hidden{} : outside_.BeginsWait(task, fd, asked);
+    if (hidden == OutsideWaits::Hidden::kNothing) continue;
     watched->has_hidden = true;
-    reactor_.Modify(fd, (asked & EPOLLOUT) | EPOLLONESHOT, subject);
+    reactor_.Modify(fd, (asked & SeenOf(hidden)) | EPOLLONESHOT, subject);
     if (watched->members.empty()) AddMembers(task, fd, subject, *watched);
   }
 }

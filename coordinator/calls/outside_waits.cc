@@ -2,8 +2,11 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/epoll.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <x86gprintrin.h>
@@ -44,6 +47,12 @@ VirtualDuration Passed(HostDuration real, double speed) {
 bool HasInput(int fd) {
   pollfd probe{fd, POLLIN, 0};
   return poll(&probe, 1, 0) > 0;
+}
+
+bool IsBeingConnected(int fd) {
+  std::uint8_t state = TCP_CLOSE;
+  socklen_t size = sizeof state;
+  return getsockopt(fd, IPPROTO_TCP, TCP_INFO, &state, &size) == 0 && state == TCP_SYN_SENT;
 }
 
 double SpeedOf(const Process& process) { return process.robot->outside_speed; }
@@ -135,6 +144,7 @@ OutsideWaits::File* OutsideWaits::Publish(std::uint64_t key, std::string name, b
 }
 
 void OutsideWaits::ShowFrom(File& file, std::int64_t ns) {
+  file.place->is_connecting.store(file.is_connecting ? 1 : 0);
   file.place->seen_from_ns.store(file.is_bare ? 0 : ns);
 }
 
@@ -147,12 +157,12 @@ OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& not
   }
   const UniqueFd copy = CopyOfDescriptor(*task.process, static_cast<int>(note.args[1]));
   if (!copy) return Next::kGoesOn;
+  const HostDuration ago = SinceTsc(static_cast<std::uint64_t>(note.args[2]));
   if (event == shm::OutsideEvent::kConnects) {
-    Connects(task, copy.get());
-    return Next::kGoesOn;
+    return Connects(task, copy.get(), ago) ? Next::kHasAsked : Next::kGoesOn;
   }
   if (event == shm::OutsideEvent::kLooks) {
-    BeginsWait(task, copy.get());
+    BeginsWait(task, copy.get(), EPOLLIN);
     return Next::kHolds;
   }
   File* file = FileOf(copy.get());
@@ -162,7 +172,7 @@ OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& not
       // What is still to be taken is no answer to this, and stays to be seen.
       if (file->state != State::kIdle || file->is_always || file->has_outlasted) break;
       if (HasInput(copy.get())) break;
-      Ask(*file, task, SinceTsc(static_cast<std::uint64_t>(note.args[2])));
+      Ask(*file, task, ago);
       return Next::kHasAsked;
     case shm::OutsideEvent::kTakes:
       file->has_outlasted = false;
@@ -186,21 +196,27 @@ void OutsideWaits::ShowRest(File& file) {
   ShowFrom(file, 0);
 }
 
-void OutsideWaits::Connects(const Task& task, int fd) {
+// True: it is being connected, and that takes a while.
+bool OutsideWaits::Connects(const Task& task, int fd, HostDuration ago) {
   struct stat status;
-  if (fstat(fd, &status) != 0) return;
+  if (fstat(fd, &status) != 0) return false;
   if (S_ISCHR(status.st_mode)) {
     std::error_code unreadable;
     const auto path =
         std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", fd), unreadable);
     Publish(shm::OutsideKeyOf(status), path.string(), true, task.process);
-    return;
+    return false;
   }
   const std::optional<Peers::Peer> peer = peers_.Of(*task.process, fd);
-  if (!peer.has_value()) return;
+  if (!peer.has_value()) return false;
   const bool is_named = IsNamed(*task.process, peer->name);
-  if (!peer->is_outside && !is_named) return;
-  Publish(shm::OutsideKeyOf(status), peer->name, is_named, task.process);
+  if (!peer->is_outside && !is_named) return false;
+  File* file = Publish(shm::OutsideKeyOf(status), peer->name, is_named, task.process);
+  if (file == nullptr || !IsBeingConnected(fd)) return false;
+  file->is_connecting = true;
+  file->has_outlasted = false;
+  Ask(*file, task, ago);
+  return true;
 }
 
 // Others of the same file may be left, here and in other processes of the run.
@@ -252,18 +268,21 @@ void OutsideWaits::ForEachAt(const Task& task, int fd, Take take) {
     File* file = copy ? FileOf(copy.get()) : nullptr;
     if (file == nullptr) continue;
     // Who is told of room, too, is told of both at once.
-    if ((entry.events & EPOLLOUT) != 0 && !std::exchange(file->is_bare, true)) ShowFrom(*file, 0);
+    const bool tells_of_both = (entry.events & EPOLLOUT) != 0 && !file->is_connecting;
+    if (tells_of_both && !std::exchange(file->is_bare, true)) ShowFrom(*file, 0);
     take(*file, copy.get());
   }
 }
 
-bool OutsideWaits::BeginsWait(const Task& task, int fd) {
-  bool hides = false;
+OutsideWaits::Hidden OutsideWaits::BeginsWait(const Task& task, int fd, std::uint32_t events) {
+  Hidden hidden = Hidden::kNothing;
   ForEachAt(task, fd, [&](File& file, int copy) {
+    if ((events & EPOLLIN) == 0 && !file.is_connecting) return;
     Await(file, task, copy);
-    hides |= IsHidden(file, task.reached);
+    if (!IsHidden(file, task.reached)) return;
+    hidden = std::max(hidden, file.is_connecting ? Hidden::kAll : Hidden::kInput);
   });
-  return hides;
+  return hidden;
 }
 
 bool OutsideWaits::Hides(const Task& task, int fd) {
@@ -291,9 +310,10 @@ void OutsideWaits::Await(File& file, const Task& task, int fd) {
   file.number = ++watches_ & Subject::kNumberMask;
   const auto index = static_cast<std::uint32_t>(
       file.place - static_cast<shm::OutsideFiles::Place*>(published_->places));
-  const bool is_watched =
-      file.copy && reactor_.Add(file.copy.get(), EPOLLIN | EPOLLPRI | EPOLLRDHUP | EPOLLONESHOT,
-                                {Tag::kOutside, index, file.number});
+  const std::uint32_t answers =
+      file.is_connecting ? std::uint32_t{EPOLLOUT} : EPOLLIN | EPOLLPRI | EPOLLRDHUP;
+  const bool is_watched = file.copy && reactor_.Add(file.copy.get(), answers | EPOLLONESHOT,
+                                                    {Tag::kOutside, index, file.number});
   if (!is_watched) {
     // There is nothing to wait for in what cannot be polled.
     Rest(file);
@@ -349,6 +369,7 @@ void OutsideWaits::Rest(File& file) {
   has_rested_ |= file.state == State::kAsked || file.state == State::kCame;
   if (std::exchange(file.is_awaited, false)) --awaited_;
   file.state = State::kIdle;
+  file.is_connecting = false;
   ShowFrom(file, file.is_always && !file.has_outlasted ? shm::kOutsideRests : 0);
 }
 
@@ -424,8 +445,13 @@ bool OutsideWaits::Show(VirtualTime at, HostTime now) {
   bool has_shown = false;
   for (File& file : files_) {
     if (file.state == State::kCame && file.seen_from <= at) {
-      file.state = State::kShown;
-      if (std::exchange(file.is_awaited, false)) --awaited_;
+      if (file.is_connecting) {
+        // There is nothing to be taken.
+        Rest(file);
+      } else {
+        file.state = State::kShown;
+        if (std::exchange(file.is_awaited, false)) --awaited_;
+      }
       has_shown = true;
     } else if (file.state == State::kAsked && file.is_awaited) {
       const bool is_over = now - file.asked_real > SpecOf(*file.process).outside.patience;

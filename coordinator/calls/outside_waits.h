@@ -46,10 +46,11 @@ class OutsideWaits {
   enum class Next { kGoesOn, kHolds, kHasAsked };
   Next Handle(Task& task, const shm::Notification& note);
 
-  // The thread begins to wait at the file, or the epoll set, of which `fd` is a copy. True: what
-  // comes by it, or by a member, is hidden from it, and the wait must not end by that until Show()
-  // says so.
-  bool BeginsWait(const Task& task, int fd);
+  // The thread begins to wait at the file, or the epoll set, of which `fd` is a copy, for such
+  // events. What comes by it, or by a member, may be hidden from it: the wait must not end by that
+  // until Show() says so. kInput: what can be read; kAll: that it is connected, too.
+  enum class Hidden { kNothing, kInput, kAll };
+  Hidden BeginsWait(const Task& task, int fd, std::uint32_t events);
   // Whether that is still so.
   bool Hides(const Task& task, int fd);
   // Whether it is hidden now from those who are at that time; of an epoll set: false.
@@ -100,7 +101,8 @@ class OutsideWaits {
         nullptr;  // that has connected it, or asked; of named files: null at first
     State state = State::kIdle;
     bool is_awaited = false, has_outlasted = false;
-    bool is_bare = false;  // nothing of it is hidden
+    bool is_bare = false;        // nothing of it is hidden
+    bool is_connecting = false;  // what it has asked for is to be connected
     VirtualTime asked_at, seen_from;
     HostTime asked_real;
     HostDuration used;         // of a call: by its thread, when it was first found in it
@@ -112,7 +114,7 @@ class OutsideWaits {
   File* FileOf(int fd);
   File* FreeFile();
   File* Publish(std::uint64_t key, std::string name, bool is_always, const Process* process);
-  void Connects(const Task& task, int fd);
+  bool Connects(const Task& task, int fd, HostDuration ago);
   void Closes(int fd);
   void ShowRest(File& file);
   template <class Take>
