@@ -113,6 +113,10 @@ awaited::Descriptors DescriptorWaits::WatchKept(Task& task) {
   return watched;
 }
 
+void DescriptorWaits::BeginAllAgain(TaskTable& table) {
+  for (Task& task : table.tasks()) BeginAgain(task);
+}
+
 void DescriptorWaits::BeginAgain(Task& task) {
   auto* watched = task.Awaits<awaited::Descriptors>();
   if (watched == nullptr) return;

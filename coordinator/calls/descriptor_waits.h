@@ -37,8 +37,8 @@ class DescriptorWaits {
   awaited::Descriptors WatchAsAsked(Task& task, const shm::Notification& note);
   // The wait is a new one, behind all others that want to take from the same descriptor.
   void GoBehind(Task& task, awaited::Descriptors& watched);
-  // Something was asked for by what the waiting thread may wait for: it is hidden from then on.
-  void BeginAgain(Task& task);
+  // Something was asked for by what waiting threads may wait for: it is hidden from then on.
+  void BeginAllAgain(TaskTable& table);
   // What was hidden from the waiting thread may be no more (outside_waits.h).
   void LookAgain(Task& task);
   // The wait is over.
@@ -48,6 +48,7 @@ class DescriptorWaits {
   static Subject SubjectOf(const Task& task, const awaited::Descriptors& watched);
 
  private:
+  void BeginAgain(Task& task);
   void Add(const Task& task, Copy copy, const Subject& subject, awaited::Descriptors& watched);
   void AddMembers(const Task& task, int set, const Subject& subject, awaited::Descriptors& watched);
   // False if it cannot be watched.

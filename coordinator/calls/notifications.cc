@@ -50,7 +50,7 @@ bool Notifications::MeetsOutside(Task& task, const shm::Notification& note) {
       waker_.Hold(task, shm::NotificationKind::kRead);
       break;
     case OutsideWaits::Next::kHasAsked:
-      for (Task& other : run_.table.tasks()) parts_.descriptors.BeginAgain(other);
+      parts_.descriptors.BeginAllAgain(run_.table);
       break;
   }
   return true;

@@ -190,6 +190,23 @@ OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& not
   return Next::kGoesOn;
 }
 
+bool OutsideWaits::AsksRaw(const Task& task, int fd) {
+  File* file = FileOf(fd);
+  if (file == nullptr || file->is_always || file->has_outlasted || HasInput(fd)) return false;
+  // What was taken raw nobody has told of.
+  if (file->state == State::kShown) Rest(*file);
+  if (file->state != State::kIdle) return false;
+  Ask(*file, task);
+  return true;
+}
+
+bool OutsideWaits::HasConnectedRaw(const Task& task) {
+  if (published_ == nullptr) return false;
+  const auto number = static_cast<int>(task.trapped_call.args[0]);
+  const UniqueFd copy = CopyOfDescriptor(*task.process, number);
+  return copy && Connects(task, copy.get(), HostDuration());
+}
+
 // The rest of what has been taken.
 void OutsideWaits::ShowRest(File& file) {
   file.state = State::kShown;

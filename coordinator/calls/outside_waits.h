@@ -46,6 +46,11 @@ class OutsideWaits {
   enum class Next { kGoesOn, kHolds, kHasAsked };
   Next Handle(Task& task, const shm::Notification& note);
 
+  // The same where the shim does not see it, with a copy of the descriptor that the thread is about
+  // to send by, or once it has made its trapped connect. True: kHasAsked.
+  bool AsksRaw(const Task& task, int fd);
+  bool HasConnectedRaw(const Task& task);
+
   // The thread begins to wait at the file, or the epoll set, of which `fd` is a copy, for such
   // events. What comes by it, or by a member, may be hidden from it: the wait must not end by that
   // until Show() says so. kInput: what can be read; kAll: that it is connected, too.

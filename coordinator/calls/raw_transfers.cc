@@ -148,6 +148,11 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
     if (of_timer || !fd.IsEventFd()) activations_.ReceivedRaw(task, of_timer);
   }
   const bool is_ready = fd.IsReady(events) || (!transfer.reads && fd.HasRoom());
+  if (call.number == SYS_connect) {
+    task.follow_up = FollowUp::kConnected;
+  } else if (!transfer.reads && outside_.AsksRaw(task, fd.fd())) {
+    descriptors_.BeginAllAgain(run_.table);
+  }
   if (is_ready || fd.IsNonBlocking() || AnswersAtOnce(task, call, fd, transfer)) {
     waker_.HoldInCall(
         task, transfer.reads ? shm::NotificationKind::kRead : shm::NotificationKind::kWrite);

@@ -6,6 +6,7 @@
 
 #include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/calls/local_sockets.h"
+#include "coordinator/calls/outside_waits.h"
 #include "coordinator/calls/raw_draws.h"
 #include "coordinator/calls/raw_timers.h"
 #include "coordinator/os/trap.h"
@@ -16,26 +17,31 @@ namespace tcs {
 
 class RawTransfers {
  public:
-  RawTransfers(Waker& waker, Activations& activations, DescriptorWaits& descriptors,
-               RawTimers& timers, LocalSockets& local_sockets, const RawDraws& draws)
-      : waker_(waker),
+  RawTransfers(RunState& run, Waker& waker, Activations& activations, DescriptorWaits& descriptors,
+               RawTimers& timers, LocalSockets& local_sockets, const RawDraws& draws,
+               OutsideWaits& outside)
+      : run_(run),
+        waker_(waker),
         activations_(activations),
         descriptors_(descriptors),
         timers_(timers),
         local_sockets_(local_sockets),
-        draws_(draws) {}
+        draws_(draws),
+        outside_(outside) {}
 
   // The call goes on once it is ready, or can find all that was sent until now.
   void Handle(Task& task, const TrappedCall& call);
   static bool Receives(const TrappedCall& call);
 
  private:
+  RunState& run_;
   Waker& waker_;
   Activations& activations_;
   DescriptorWaits& descriptors_;
   RawTimers& timers_;
   LocalSockets& local_sockets_;
   const RawDraws& draws_;
+  OutsideWaits& outside_;
 };
 
 }  // namespace tcs

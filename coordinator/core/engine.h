@@ -337,8 +337,8 @@ class Engine {
   RawLimits raw_limits_{run_};
   RawPolls raw_polls_{waker_, descriptors_};
   RawDraws raw_draws_{run_};
-  RawTransfers raw_transfers_{waker_,      activations_,   descriptors_,
-                              raw_timers_, local_sockets_, raw_draws_};
+  RawTransfers raw_transfers_{run_,        waker_,         activations_, descriptors_,
+                              raw_timers_, local_sockets_, raw_draws_,   outside_};
   RawChildWaits raw_child_waits_{run_, waker_, unknown_children_};
   RawIpc raw_ipc_{run_, waker_, activations_, objects_, descriptors_};
   RawCalls raw_calls_{
@@ -352,7 +352,8 @@ class Engine {
   TrappedCalls trapped_{run_,    waker_,     futexes_,       raw_calls_, guard_,
                         deaths_, *executor_, local_sockets_, spawns_};
   KeptCalls kept_calls_{waker_, descriptors_};
-  FollowUps follow_ups_{run_, objects_, shared_events_, signals_, signal_wakes_, spawns_};
+  FollowUps follow_ups_{run_,          objects_, shared_events_, signals_,
+                        signal_wakes_, spawns_,  outside_,       descriptors_};
 
   // What they notify.
   Notifications notifications_{

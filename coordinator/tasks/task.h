@@ -47,7 +47,8 @@ enum class FollowUp {
   kObjects,
   kContinued,
   kTerminals,
-  kBirths
+  kBirths,
+  kConnected
 };
 
 // A thread or a process that a thread is making, or has made: it is looked for until it is known
