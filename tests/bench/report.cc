@@ -169,6 +169,26 @@ std::string FleetTable(const FleetRows& fleets) {
   return text;
 }
 
+std::string ZooTable(const std::vector<ZooRow>& rows) {
+  static constexpr char kLine[] = "{:<18}{:>8}{:>10}{:>10}{:>12}\n";
+  const auto cell = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.2g}", *value) : std::string("-");
+  };
+  std::string text = fmt::format(kLine, "zoo", "load ms", "Simbody", "MuJoCo", "from DART");
+  for (const ZooRow& row : rows) {
+    text += fmt::format(kLine, row.robot, cell(row.load_ms), cell(row.simbody), cell(row.mujoco),
+                        cell(row.from_dart));
+  }
+  return text +
+         "Robots in the style of those that people bring (tests/zoo). Engines: times real time on "
+         "one\n"
+         "processor, the slowest of 1 s free, held by servos and moved at random; -: it did not go "
+         "well.\n"
+         "From DART: rad or m, of the joint that is farthest off after 1 s of smooth motion; -: no "
+         "DART, or\n"
+         "it does not read the file.\n";
+}
+
 std::string RobotTables(const RobotRows& robots) {
   static constexpr char kModelLine[] = "{:<18}{:<9}{:>12}  {:<11}{:>7}{:>7}{:>8}  {}\n";
   std::string text =
@@ -195,7 +215,7 @@ std::string RobotTables(const RobotRows& robots) {
       "programs a drone; microseconds and dispatches for each tick of a rate loop and all that\n"
       "belongs to it. Medians of {} round{}.\n",
       robots.virtual_s, robots.rounds, robots.rounds == 1 ? "" : "s");
-  return text;
+  return text + "\n" + ZooTable(robots.zoo);
 }
 
 Json ToJson(const Spread& spread) {
@@ -323,7 +343,18 @@ std::string ToJson(const Results& results) {
     to = {{"rounds", robots->rounds},
           {"virtual_seconds", robots->virtual_s},
           {"models", Json::array()},
-          {"swarms", Json::array()}};
+          {"swarms", Json::array()},
+          {"zoo", Json::array()}};
+    const auto or_null = [](const std::optional<double>& value) {
+      return value ? Json(*value) : Json();
+    };
+    for (const ZooRow& row : robots->zoo) {
+      to["zoo"].push_back({{"robot", row.robot},
+                           {"load_ms", row.load_ms},
+                           {"simbody_times_real_time", or_null(row.simbody)},
+                           {"mujoco_times_real_time", or_null(row.mujoco)},
+                           {"from_dart", or_null(row.from_dart)}});
+    }
     for (const ModelRow& row : robots->models) {
       to["models"].push_back({{"robot", row.robot},
                               {"engine", row.engine},

@@ -85,7 +85,11 @@ std::optional<RunCosts> RunOnce(const SwarmCase& swarm, double virtual_s) {
 }  // namespace
 
 std::optional<RobotRows> MeasureRobots(int rounds, bool quick) {
-  RobotRows results{.rounds = rounds, .virtual_s = quick ? 0.2 : 4, .models = {}, .swarms = {}};
+  RobotRows results{.rounds = rounds,
+                    .virtual_s = quick ? 0.2 : 4,
+                    .models = {},
+                    .swarms = {},
+                    .zoo = MeasureZoo(quick)};
   for (const ModelCase& of : kModels) {
     if (of.engine == EngineKind::kMujoco && !HasMujoco()) continue;
     auto row = MeasureModel(of, rounds, quick);

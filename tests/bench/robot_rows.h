@@ -9,6 +9,7 @@
 
 #include "tests/bench/run_costs.h"
 #include "tests/bench/spread.h"
+#include "tests/bench/zoo_rows.h"
 
 namespace tcs::bench {
 
@@ -44,6 +45,7 @@ struct RobotRows {
   double virtual_s = 0;  // of a swarm
   std::vector<ModelRow> models;
   std::vector<SwarmRow> swarms;
+  std::vector<ZooRow> zoo;
 };
 
 // None, with a sentence on stderr, if one of them could not be measured. Swarms are on MuJoCo,
