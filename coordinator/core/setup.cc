@@ -72,6 +72,9 @@ std::string Engine::Prepare() {
   // A step that takes long is not to hold up who asks for the end.
   world_.InterruptBy([this] { return !run_.stop.asked() && HasSignal(); });
   if (std::string taken = TakeCpu(); !taken.empty()) return taken;
+  // Before there are threads, which have the mask of whoever makes them, and files that tell that
+  // the run has begun.
+  if (std::string error = PrepareSignals(); !error.empty()) return error;
   const int home = HomeCpu();
   state_link_.RunsOn(home);
   const std::vector<int> further = ComputingAhead::CpusBeside(home, run_);
@@ -104,7 +107,6 @@ std::string Engine::Prepare() {
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (network_.present()) dds_.UseNetwork(*network_.wire());
   if (world_.present()) run_.root.UpdateDynamics(world_.progress(), world_.NextOutput());
-  if (std::string error = PrepareSignals(); !error.empty()) return error;
   if (world_.has_terminals()) waker_.AwaitTerminals();
   std::uint32_t inlet = 0;
   for (const int fd : world_.command_fds()) {

@@ -165,7 +165,13 @@ void Commands::Take(std::size_t channel, const CommandSent& sent,
   Channel& on = channels_[channel];
   ++on.taken;
   ++taken_;
-  on.follower->Follow(sent.at, trajectory);
+  JointTrajectory driven = trajectory;
+  for (std::size_t i = driven.joints.size(); i-- > 0;) {
+    if (driven.joints[i] < on.spec.joints->group.joints.size()) continue;
+    LeaveFollowerOut(&on, {driven.joints[i]});
+    LeaveOut(i, &driven);
+  }
+  if (!driven.joints.empty()) on.follower->Follow(sent.at, driven);
 }
 
 void Commands::Take(std::size_t channel, const CommandSent& sent, const PlanarSpeed& speed) {

@@ -41,6 +41,17 @@ std::string WhatIsWrongWith(const JointTrajectory& trajectory) {
   return {};
 }
 
+void LeaveOut(std::size_t number, JointTrajectory* trajectory) {
+  const auto erase = [at = static_cast<std::ptrdiff_t>(number)](auto* of_joints) {
+    if (!of_joints->empty()) of_joints->erase(of_joints->begin() + at);
+  };
+  erase(&trajectory->joints);
+  for (JointTrajectory::Point& point : trajectory->points) {
+    erase(&point.positions);
+    erase(&point.velocities);
+  }
+}
+
 JointSetpoint SetpointAt(const JointTrajectory& trajectory, std::size_t joint, double from,
                          VirtualDuration after) {
   const std::vector<JointTrajectory::Point>& points = trajectory.points;

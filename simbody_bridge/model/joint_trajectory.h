@@ -27,6 +27,9 @@ struct JointTrajectory {
 // What is wrong with the trajectory, as the rest of a sentence about it; empty: nothing.
 std::string WhatIsWrongWith(const JointTrajectory& trajectory);
 
+// Makes it one of the other joints alone. `number` counts them as `joints` does.
+void LeaveOut(std::size_t number, JointTrajectory* trajectory);
+
 struct JointSetpoint {
   double position = 0, velocity = 0;
 };

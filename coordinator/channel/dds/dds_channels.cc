@@ -129,7 +129,7 @@ class DdsChannels::CommandInlet final : public Inlet {
     if (goals && goals->are_wheels) {
       give(dds::DecodeSpeed(sample.cdr));
     } else if (goals && goals->follow_trajectories) {
-      give(dds::DecodeTrajectory(goals->Driven(), realtime_offset, sample.cdr));
+      give(dds::DecodeTrajectory(goals->names, realtime_offset, sample.cdr));
     } else if (goals) {
       // Numbers without names are of what is driven.
       const bool has_names = message != dds::CommandMessage::kFloat64MultiArray;

@@ -47,6 +47,18 @@ TEST(JointTrajectory, WithVelocitiesIsMadeOfCubics) {
   }
 }
 
+TEST(JointTrajectory, LeavesAJointOut) {
+  JointTrajectory trajectory{.joints = {0, 2, 1}, .points = {}, .start = {}};
+  trajectory.points.push_back({Ms(10), {1, 2, 3}, {4, 5, 6}});
+  trajectory.points.push_back({Ms(20), {7, 8, 9}, {}});
+  LeaveOut(1, &trajectory);
+  EXPECT_EQ(trajectory.joints, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(trajectory.points[0].positions, (std::vector<double>{1, 3}));
+  EXPECT_EQ(trajectory.points[0].velocities, (std::vector<double>{4, 6}));
+  EXPECT_EQ(trajectory.points[1].positions, (std::vector<double>{7, 9}));
+  EXPECT_TRUE(trajectory.points[1].velocities.empty());
+}
+
 TEST(JointTrajectory, WhatIsNoneIsSaid) {
   JointTrajectory trajectory = To(2, 100);
   EXPECT_EQ(WhatIsWrongWith(trajectory), "");
