@@ -40,9 +40,6 @@ void FollowUps::Do(Task& task, Moment call, bool last) {
     case FollowUp::kBirths:
       spawns_.LookForBirths(task, call);
       break;
-    case FollowUp::kConnected:
-      if (outside_.HasConnectedRaw(task)) descriptors_.BeginAllAgain(run_.table);
-      break;
     case FollowUp::kContinued:
       if (Process* parent = run_.table.LivingProcess(task.process->parent); parent != nullptr) {
         signal_wakes_.WakeForSignals(*parent, call);

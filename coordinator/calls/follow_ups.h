@@ -5,9 +5,7 @@
 // For the coordinator's thread only.
 #pragma once
 
-#include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/calls/kernel_object_waits.h"
-#include "coordinator/calls/outside_waits.h"
 #include "coordinator/calls/shared_events.h"
 #include "coordinator/calls/signal_calls.h"
 #include "coordinator/calls/signal_wakes.h"
@@ -19,16 +17,13 @@ namespace tcs {
 class FollowUps {
  public:
   FollowUps(RunState& run, KernelObjectWaits& objects, SharedEvents& shared_events,
-            SignalCalls& signals, SignalWakes& signal_wakes, Spawns& spawns, OutsideWaits& outside,
-            DescriptorWaits& descriptors)
+            SignalCalls& signals, SignalWakes& signal_wakes, Spawns& spawns)
       : run_(run),
         objects_(objects),
         shared_events_(shared_events),
         signals_(signals),
         signal_wakes_(signal_wakes),
-        spawns_(spawns),
-        outside_(outside),
-        descriptors_(descriptors) {}
+        spawns_(spawns) {}
 
   // The thread has run since the kernel got the call, which it made at `call`. `last`: it is known
   // to have come back from it.
@@ -41,8 +36,6 @@ class FollowUps {
   SignalCalls& signals_;
   SignalWakes& signal_wakes_;
   Spawns& spawns_;
-  OutsideWaits& outside_;
-  DescriptorWaits& descriptors_;
 };
 
 }  // namespace tcs

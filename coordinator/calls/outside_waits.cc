@@ -37,6 +37,9 @@ constexpr VirtualDuration kFound = VirtualDuration::Microseconds(20);
 // Drivers have many calls that wait for a moment: for each other, or for a lock.
 constexpr HostDuration kShortCall = HostDuration::Microseconds(100);
 
+// How often a raw connect is looked for that another thread may be about to make still.
+constexpr int kMostLooks = 3;
+
 // What a program says of itself is believed so far.
 constexpr HostDuration kLongestNews = HostDuration::Seconds(1);
 
@@ -191,6 +194,7 @@ OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& not
 }
 
 bool OutsideWaits::AsksRaw(const Task& task, int fd) {
+  LookAtRawConnects(task);
   File* file = FileOf(fd);
   if (file == nullptr || file->is_always || file->has_outlasted || HasInput(fd)) return false;
   // What was taken raw nobody has told of.
@@ -200,11 +204,20 @@ bool OutsideWaits::AsksRaw(const Task& task, int fd) {
   return true;
 }
 
-bool OutsideWaits::HasConnectedRaw(const Task& task) {
-  if (published_ == nullptr) return false;
-  const auto number = static_cast<int>(task.trapped_call.args[0]);
-  const UniqueFd copy = CopyOfDescriptor(*task.process, number);
-  return copy && Connects(task, copy.get(), HostDuration());
+void OutsideWaits::ConnectsRaw(const Task& task, int number) {
+  if (published_ != nullptr) raw_connects_.push_back({task.process, number, 0});
+}
+
+// The kernel carries them out meanwhile. One that it has refused is never found.
+void OutsideWaits::LookAtRawConnects(const Task& task) {
+  if (raw_connects_.empty()) return;
+  std::erase_if(raw_connects_, [&](RawConnect& connect) {
+    if (connect.process->dead) return true;
+    if (connect.process != task.process) return false;
+    const UniqueFd copy = CopyOfDescriptor(*task.process, connect.number);
+    if (copy) Connects(task, copy.get(), HostDuration());
+    return !copy || FileOf(copy.get()) != nullptr || ++connect.looks >= kMostLooks;
+  });
 }
 
 // The rest of what has been taken.
@@ -292,6 +305,7 @@ void OutsideWaits::ForEachAt(const Task& task, int fd, Take take) {
 }
 
 OutsideWaits::Hidden OutsideWaits::BeginsWait(const Task& task, int fd, std::uint32_t events) {
+  LookAtRawConnects(task);
   Hidden hidden = Hidden::kNothing;
   ForEachAt(task, fd, [&](File& file, int copy) {
     if ((events & EPOLLIN) == 0 && !file.is_connecting) return;

@@ -20,6 +20,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/processes/peers.h"
@@ -46,10 +47,11 @@ class OutsideWaits {
   enum class Next { kGoesOn, kHolds, kHasAsked };
   Next Handle(Task& task, const shm::Notification& note);
 
-  // The same where the shim does not see it, with a copy of the descriptor that the thread is about
-  // to send by, or once it has made its trapped connect. True: kHasAsked.
+  // The same where the shim does not see it: the thread is about to send by the socket of which
+  // `fd` is a copy (true: kHasAsked), or to connect the one with that number. Whom that reaches is
+  // found when its process next waits, or sends.
   bool AsksRaw(const Task& task, int fd);
-  bool HasConnectedRaw(const Task& task);
+  void ConnectsRaw(const Task& task, int number);
 
   // The thread begins to wait at the file, or the epoll set, of which `fd` is a copy, for such
   // events. What comes by it, or by a member, may be hidden from it: the wait must not end by that
@@ -121,6 +123,7 @@ class OutsideWaits {
   File* Publish(std::uint64_t key, std::string name, bool is_always, const Process* process);
   bool Connects(const Task& task, int fd, HostDuration ago);
   void Closes(int fd);
+  void LookAtRawConnects(const Task& task);
   void ShowRest(File& file);
   template <class Take>
   void ForEachAt(const Task& task, int fd, Take take);
@@ -144,6 +147,12 @@ class OutsideWaits {
   std::deque<File> files_;  // never moved
   int awaited_ = 0;         // of those
   bool has_rested_ = false;
+  struct RawConnect {
+    const Process* process;
+    int number;
+    int looks;
+  };
+  std::vector<RawConnect> raw_connects_;  // of which nothing is known yet
   std::uint32_t watches_ = 0;
 };
 

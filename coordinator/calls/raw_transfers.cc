@@ -149,7 +149,7 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
   }
   const bool is_ready = fd.IsReady(events) || (!transfer.reads && fd.HasRoom());
   if (call.number == SYS_connect) {
-    task.follow_up = FollowUp::kConnected;
+    outside_.ConnectsRaw(task, number);
   } else if (!transfer.reads && outside_.AsksRaw(task, fd.fd())) {
     descriptors_.BeginAllAgain(run_.table);
   }

@@ -352,8 +352,7 @@ class Engine {
   TrappedCalls trapped_{run_,    waker_,     futexes_,       raw_calls_, guard_,
                         deaths_, *executor_, local_sockets_, spawns_};
   KeptCalls kept_calls_{waker_, descriptors_};
-  FollowUps follow_ups_{run_,          objects_, shared_events_, signals_,
-                        signal_wakes_, spawns_,  outside_,       descriptors_};
+  FollowUps follow_ups_{run_, objects_, shared_events_, signals_, signal_wakes_, spawns_};
 
   // What they notify.
   Notifications notifications_{

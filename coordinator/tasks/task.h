@@ -47,8 +47,7 @@ enum class FollowUp {
   kObjects,
   kContinued,
   kTerminals,
-  kBirths,
-  kConnected
+  kBirths
 };
 
 // A thread or a process that a thread is making, or has made: it is looked for until it is known
