@@ -56,8 +56,10 @@ constexpr Settlement SettleRun(const StoppedRun& run) {
   constexpr VirtualDuration kNone;
   Settlement result;
   // What the notification itself takes is ours: neither the thread's clock nor its charge shows it.
+  // One that had begun to notify when an earlier turn ended still owes what it had executed then.
   if (run.noted.has_value() && *run.noted < run.horizon) {
-    result.ours = std::max(kNone, run.reached - std::max(*run.noted, run.start));
+    const VirtualTime begun = run.start + std::max(kNone, -run.credit);
+    result.ours = std::max(kNone, run.reached - std::max(*run.noted, begun));
   }
   const VirtualTime reached = run.reached - result.ours;
   // What the clock has shown has happened, even where stolen time was found in it afterwards.
