@@ -55,6 +55,7 @@ GuestThread* CurrentSlow() {
     if (EnvironmentRemembered()) g_process->mode = ProcessState::kPassThrough;
     return nullptr;
   }
+  if (g_process->mode == ProcessState::kFresh) ForgetSharers();
   thread = GuestThread{};
   thread.attaching = true;
   Attach(thread);

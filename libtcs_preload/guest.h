@@ -73,6 +73,8 @@ GuestThread* CurrentSlow();
 // the system call without CLONE_SETTLS have their maker's thread-local storage
 // (shared_storage.cc).
 GuestThread& StateInSharedStorage();
+// In the child of a fork, whose threads they are not.
+void ForgetSharers();
 
 // The calling thread's own state. A child by fork or by a bare clone still has its parent's slot in
 // `t_thread`, but not that slot's memory.

@@ -6,6 +6,7 @@
 #include <x86gprintrin.h>
 
 #include "libtcs_preload/exchange.h"
+#include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -17,11 +18,12 @@ namespace {
 
 using shm::OutsideEvent;
 
-void Tell(GuestThread& thread, OutsideEvent event, int fd, std::uint64_t tsc = 0) {
+void Tell(GuestThread& thread, OutsideEvent event, int fd, std::uint64_t tsc = 0,
+          bool is_so = false) {
   const int error = errno;
-  Exchange(thread,
-           Request{.kind = shm::NotificationKind::kOutside,
-                   .args = {static_cast<std::int64_t>(event), fd, static_cast<std::int64_t>(tsc)}});
+  Exchange(thread, Request{.kind = shm::NotificationKind::kOutside,
+                           .args = {static_cast<std::int64_t>(event), fd,
+                                    static_cast<std::int64_t>(tsc), is_so ? 1 : 0}});
   errno = error;
 }
 
@@ -32,6 +34,7 @@ bool IsAnythingHidden(GuestThread& thread) {
   const std::uint32_t used = files.used.load(std::memory_order_acquire);
   const std::int64_t now = NowNs(thread);
   for (std::uint32_t i = 0; i < used && i < shm::OutsideFiles::kPlaces; ++i) {
+    if (shm::IsOutsideCall(files.places[i].key.load(std::memory_order_relaxed))) continue;
     const std::int64_t from = files.places[i].seen_from_ns.load(std::memory_order_acquire);
     if (from > now && from != shm::kOutsideRests) return true;
   }
@@ -55,6 +58,12 @@ bool IsHidden(GuestThread& thread, OutsidePlace* place) {
   if (place == nullptr) return false;
   const std::int64_t from = place->seen_from_ns.load(std::memory_order_acquire);
   return from != 0 && from > NowNs(thread);
+}
+
+Hides HiddenOf(GuestThread& thread, OutsidePlace* place) {
+  if (!IsHidden(thread, place)) return Hides::kNothing;
+  const bool is_connecting = place->is_connecting.load(std::memory_order_relaxed) != 0;
+  return is_connecting ? Hides::kAll : Hides::kInput;
 }
 
 bool IsHiddenFromLook(GuestThread& thread, int fd) {
@@ -86,10 +95,10 @@ long WithoutHidden(GuestThread& thread, pollfd* fds, unsigned long count, long f
       static_cast<short>(POLLIN | POLLRDNORM | POLLPRI | POLLRDHUP | POLLHUP | POLLERR);
   for (unsigned long i = 0; i < count; ++i) {
     if (fds[i].revents == 0) continue;
-    OutsidePlace* place = OutsideOf(fds[i].fd);
-    if (!IsHidden(thread, place)) continue;
-    const bool hides_room = place->is_connecting.load(std::memory_order_relaxed) != 0;
-    const auto hidden = static_cast<short>(kFromOutside | (hides_room ? POLLOUT | POLLWRNORM : 0));
+    const Hides hides = HiddenOf(thread, OutsideOf(fds[i].fd));
+    if (hides == Hides::kNothing) continue;
+    const int room = hides == Hides::kAll ? POLLOUT | POLLWRNORM : 0;
+    const auto hidden = static_cast<short>(kFromOutside | room);
     if ((fds[i].revents & hidden) == 0) continue;
     fds[i].revents = static_cast<short>(fds[i].revents & ~hidden);
     if (fds[i].revents == 0) --found;
@@ -145,13 +154,16 @@ void NoteOpens(int fd) {
   if (GuestThread* t = Current(); t != nullptr) Tell(*t, OutsideEvent::kConnects, fd, __rdtsc());
 }
 
-void NoteConnects(GuestThread& thread, int fd, std::uint64_t begun_tsc) {
+void NoteConnects(GuestThread& thread, int fd, std::uint64_t begun_tsc, bool is_going_on) {
   if (g_header->sync != shm::Sync::kConsistent) return;
-  Tell(thread, OutsideEvent::kConnects, fd, begun_tsc);
+  Tell(thread, OutsideEvent::kConnects, fd, begun_tsc, is_going_on);
 }
 
-void NoteAsks(GuestThread& thread, int fd, std::uint64_t begun_tsc) {
-  if (OutsideOf(fd) != nullptr) Tell(thread, OutsideEvent::kAsks, fd, begun_tsc);
+OutsideAsk BeginAsk(int fd) { return {__rdtsc(), OutsideOf(fd) != nullptr && PollNow(fd, POLLIN)}; }
+
+void NoteAsks(GuestThread& thread, int fd, const OutsideAsk& ask) {
+  if (OutsideOf(fd) == nullptr) return;
+  Tell(thread, OutsideEvent::kAsks, fd, ask.begun_tsc, ask.has_input);
 }
 
 void NoteTakes(GuestThread& thread, int fd) {

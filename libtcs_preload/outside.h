@@ -26,6 +26,9 @@ OutsidePlace* OutsideOf(int fd);
 
 // What is there in the file is not to be seen now.
 bool IsHidden(GuestThread& thread, OutsidePlace* place);
+// The same; kAll: that a connection has been made, and it can be written to, is hidden, too.
+enum class Hides { kNothing, kInput, kAll };
+Hides HiddenOf(GuestThread& thread, OutsidePlace* place);
 
 // The same for a look that does not wait: all that is to be seen now is there when this returns.
 bool IsHiddenFromLook(GuestThread& thread, int fd);
@@ -61,10 +64,17 @@ class HiddenMembers {
 bool IsDeviceOutside(const char* path);
 void NoteOpens(int fd);
 
-// The program has connected the socket, or has begun to; has sent by it, and began that then; has
-// taken something from the file, or its end; is about to close it.
-void NoteConnects(GuestThread& thread, int fd, std::uint64_t begun_tsc);
-void NoteAsks(GuestThread& thread, int fd, std::uint64_t begun_tsc);
+// What there is before the program sends by the file: what it has not taken by then is no answer.
+struct OutsideAsk {
+  std::uint64_t begun_tsc;
+  bool has_input;
+};
+OutsideAsk BeginAsk(int fd);
+
+// The program has connected the socket, or has begun to (`is_going_on`); has sent by it; has taken
+// something from the file, or its end; is about to close it.
+void NoteConnects(GuestThread& thread, int fd, std::uint64_t begun_tsc, bool is_going_on);
+void NoteAsks(GuestThread& thread, int fd, const OutsideAsk& ask);
 void NoteTakes(GuestThread& thread, int fd);
 void NoteCloses(int fd);
 

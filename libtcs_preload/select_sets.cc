@@ -146,20 +146,20 @@ long SelectSets::ProbeAgain() {
   return found;
 }
 
-// To read, and what is exceptional.
+// To read, and what is exceptional; of a connection that is being made to write, too.
 long SelectSets::WithoutHidden(GuestThread& thread, long found) {
   if (found <= 0 || !IsAnythingOutside()) return found;
-  constexpr int kFromOutside[] = {0, 2};
   for (std::size_t fd = 0; fd < count_; ++fd) {
     const std::uint64_t bit = std::uint64_t{1} << (fd % kWordBits);
-    const auto word = [&](int set) -> std::uint64_t& { return Set(found_, set)[fd / kWordBits]; };
-    const bool is_found =
-        std::any_of(std::begin(kFromOutside), std::end(kFromOutside),
-                    [&](int set) { return user_[set] != nullptr && (word(set) & bit) != 0; });
-    if (!is_found || !IsHidden(thread, OutsideOf(static_cast<int>(fd)))) continue;
-    for (const int set : kFromOutside) {
-      if (user_[set] == nullptr || (word(set) & bit) == 0) continue;
-      word(set) &= ~bit;
+    const auto is_found = [&](int set) {
+      return user_[set] != nullptr && (Set(found_, set)[fd / kWordBits] & bit) != 0;
+    };
+    if (!is_found(0) && !is_found(1) && !is_found(2)) continue;
+    const Hides hides = HiddenOf(thread, OutsideOf(static_cast<int>(fd)));
+    for (int set = 0; set < kSets; ++set) {
+      const bool hides_set = set == 1 ? hides == Hides::kAll : hides != Hides::kNothing;
+      if (!hides_set || !is_found(set)) continue;
+      Set(found_, set)[fd / kWordBits] &= ~bit;
       --found;
     }
   }

@@ -18,10 +18,10 @@ namespace {
 
 constexpr int kMostSharers = 64;  // that live at a time; the others' calls are let through
 
-constexpr std::int32_t kNobody = 0, kAboutToBe = -1;
+constexpr std::int32_t kNobody = 0;
 
 struct Sharer {
-  std::atomic<std::int32_t> tid;  // whose `state` is; else kNobody, kAboutToBe
+  std::atomic<std::int32_t> tid;  // whose `state` is; negative: who is about to have it; kNobody
   GuestThread state;
 };
 
@@ -36,8 +36,8 @@ bool HasEnded(std::int32_t pid, std::int32_t tid) {
 GuestThread* Claim(std::int32_t pid, std::int32_t tid) {
   for (Sharer& sharer : g_sharers) {
     std::int32_t before = sharer.tid.load();
-    const bool is_free = before == kNobody || (before != kAboutToBe && HasEnded(pid, before));
-    if (!is_free || !sharer.tid.compare_exchange_strong(before, kAboutToBe)) continue;
+    const bool is_free = before == kNobody || (before > 0 && HasEnded(pid, before));
+    if (!is_free || !sharer.tid.compare_exchange_strong(before, -tid)) continue;
     sharer.state = GuestThread{};
     sharer.tid = tid;
     return &sharer.state;
@@ -51,12 +51,22 @@ GuestThread& StateInSharedStorage() {
   const auto tid = static_cast<std::int32_t>(RawSyscall(SYS_gettid));
   if (tid == t_thread.tid) return t_thread;
   for (Sharer& sharer : g_sharers) {
-    if (sharer.tid.load() == tid) return sharer.state;
+    const std::int32_t whose = sharer.tid.load();
+    if (whose == tid) return sharer.state;
+    if (whose == -tid) return g_nobody;  // a handler has interrupted Claim
   }
   // A process that shares the memory has a slot in another place, which is not mapped here.
   const auto pid = static_cast<std::int32_t>(RawSyscall(SYS_getpid));
   GuestThread* const claimed = pid == t_thread.pid ? Claim(pid, tid) : nullptr;
   return claimed != nullptr ? *claimed : g_nobody;
+}
+
+void ForgetSharers() {
+  for (Sharer& sharer : g_sharers) {
+    if (sharer.tid.load() == kNobody) continue;
+    sharer.state = GuestThread{};
+    sharer.tid = kNobody;
+  }
 }
 
 }  // namespace tcs::preload

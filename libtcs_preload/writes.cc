@@ -66,7 +66,7 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   const bool at_once = !AreSound(iov, count) || IsNonBlocking(fd);
   Rest rest(iov, at_once ? 0 : count);
   if (NotesActivity()) NoteDatagram(*t, fd, nullptr, 0);
-  const std::uint64_t begun_tsc = __rdtsc();
+  const OutsideAsk ask = BeginAsk(fd);
   const long result = rest.bytes() == 0
                           ? whole(fd)
                           : TransferAll(*t, fd, POLLOUT, SO_SNDTIMEO, rest, WritePart, whole);
@@ -74,7 +74,7 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   if (result > 0 && AnybodyWaits() && IsTerminal(fd)) {
     TellChanged(*t, tcs::shm::WaitKey::kTerminals, 0);
   }
-  if (result > 0) NoteAsks(*t, fd, begun_tsc);
+  if (result > 0) NoteAsks(*t, fd, ask);
   return ToErrno(result);
 }
 
@@ -119,7 +119,7 @@ ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* 
   const bool was_in_call = t->in_call;
   const int receiver = HoldToSend(*t, fd, message);
   if (NotesActivity()) NoteDatagram(*t, fd, message.msg_name, message.msg_namelen);
-  const std::uint64_t begun_tsc = __rdtsc();
+  const OutsideAsk ask = BeginAsk(fd);
   long posted = 0;
   ssize_t sent;
   if (*may_post && Post(*t, fd, receiver, message, flags, &posted)) {
@@ -138,7 +138,7 @@ ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* 
     TakeBackDatagram(*t, fd, message.msg_name, message.msg_namelen);
     errno = error;
   }
-  if (sent >= 0 && posted == 0) NoteAsks(*t, fd, begun_tsc);
+  if (sent >= 0 && posted == 0) NoteAsks(*t, fd, ask);
   return sent;
 }
 
@@ -238,12 +238,18 @@ long ConnectFar(GuestThread& t, int fd, const sockaddr* address, socklen_t size)
   const std::uint64_t begun_tsc = __rdtsc();
   const long result = ConnectOnce(fd, address, size);
   if (result != -EINPROGRESS) return result;
-  NoteConnects(t, fd, begun_tsc);
+  NoteConnects(t, fd, begun_tsc, true);
   CallFile file(t, fd);
   const int saved = errno;
   const std::int64_t deadline = SocketDeadline(t, fd, SO_SNDTIMEO);
-  if (AwaitFd(file, POLLOUT, deadline) == FdState::kFailed) {
-    const int error = errno == EAGAIN ? EINPROGRESS : errno;
+  FdState state = FdState::kReady;
+  for (bool again = false;; again = true) {
+    const bool is_hidden = HiddenOf(t, OutsideOf(file.fd())) == Hides::kAll;
+    if (!is_hidden && PollNow(file.fd(), POLLOUT)) break;
+    if (state == FdState::kTimedOut) return -EINPROGRESS;
+    state = AwaitEvent(file, POLLOUT, deadline, again);
+    if (state != FdState::kFailed) continue;
+    const int error = errno;
     errno = saved;
     return -error;
   }
@@ -277,7 +283,7 @@ TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
     result = RawSyscall(SYS_connect, fd, Arg(address), size);
   }
   if ((is_internet || family == AF_UNIX) && (result == 0 || result == -EINPROGRESS)) {
-    NoteConnects(*t, fd, begun_tsc);
+    NoteConnects(*t, fd, begun_tsc, result == -EINPROGRESS);
   }
   return static_cast<int>(ToErrno(result));
 }

@@ -255,7 +255,8 @@ struct ClockPage {
   // accounting.
   std::int64_t allocation_cost_ns;
   std::uint32_t counts_work;  // not 0: the thread keeps its WorkCounts; kBeginsInCall
-  // Written by the coordinator, once: 1: others have the thread's storage (shared_storage.h).
+  // Written by the coordinator, once: 1: others have the thread's storage, too
+  // (libtcs_preload/shared_storage.cc).
   std::atomic<std::uint32_t> shares_storage;
   // Nothing is produced before this any more in sockets that are local to the robot.
   std::int64_t local_read_safe_ns;

@@ -17,12 +17,13 @@ namespace tcs::shm {
 // What the thread says in args[0] of NotificationKind::kOutside; args[1] is a descriptor.
 enum class OutsideEvent : std::int64_t {
   kConnects = 1,  // it has been connected, or is being connected; or it is a device, and open now;
-                  // args[2]: the TSC before that
-  kAsks = 2,      // the thread has sent by it; args[2]: the TSC before it did
-  kLooks = 3,     // it is about to look whether something is there: go on as with kRead
-  kTakes = 4,     // it has taken what was there
-  kCloses = 5,    // it is about to close it
-  kReturns = 6,   // an ioctl that waits for such a file is over; args[1]: -1
+                  // args[2]: the TSC before that; args[3]: 1: it is still being connected
+  kAsks = 2,     // the thread has sent by it; args[2]: the TSC before it did; args[3]: 1: there was
+                 // something to be taken then
+  kLooks = 3,    // it is about to look whether something is there: go on as with kRead
+  kTakes = 4,    // it has taken what was there
+  kCloses = 5,   // it is about to close it
+  kReturns = 6,  // an ioctl that waits for such a file is over; args[1]: -1
 };
 
 struct OutsideFiles {
@@ -61,9 +62,11 @@ inline std::uint64_t OutsideKeyOf(const struct stat& status) {
 }
 
 // Not a file's: what the thread, by its number on the host, waits for within a call.
+inline constexpr std::uint64_t kOutsideCall = kOutsideSocket | kOutsideDevice;
 inline std::uint64_t OutsideCallKey(std::int32_t tid) {
-  return kOutsideSocket | kOutsideDevice | static_cast<std::uint32_t>(tid);
+  return kOutsideCall | static_cast<std::uint32_t>(tid);
 }
+inline bool IsOutsideCall(std::uint64_t key) { return (key & kOutsideCall) == kOutsideCall; }
 
 // Of the file; null: it is not among them.
 template <class Files>

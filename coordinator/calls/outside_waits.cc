@@ -37,8 +37,8 @@ constexpr VirtualDuration kFound = VirtualDuration::Microseconds(20);
 // Drivers have many calls that wait for a moment: for each other, or for a lock.
 constexpr HostDuration kShortCall = HostDuration::Microseconds(100);
 
-// How often a raw connect is looked for that another thread may be about to make still.
-constexpr int kMostLooks = 3;
+// Of those that are never found.
+constexpr std::size_t kMostRawConnects = 64;
 
 // What a program says of itself is believed so far.
 constexpr HostDuration kLongestNews = HostDuration::Seconds(1);
@@ -103,13 +103,14 @@ OutsideWaits::File* OutsideWaits::FileOf(int fd) {
 
 bool OutsideWaits::MayMeetOutside(const Process& process) const {
   return std::any_of(files_.begin(), files_.end(), [&](const File& file) {
+    if (shm::IsOutsideCall(file.key)) return false;
     const bool may_wait = file.process == nullptr || file.process->client == process.client;
     return file.state != State::kIdle || (file.is_always && may_wait);
   });
 }
 
-// One that is gone, or a new one; or else that of a socket on which nothing is asked, the ones of
-// programs that have ended first. Null: there is none.
+// One that is gone, or a new one; or else that of a program that has ended, or of a socket on which
+// nothing is asked. Null: there is none.
 OutsideWaits::File* OutsideWaits::FreeFile() {
   const auto find = [this](auto is_free) {
     const auto found = std::find_if(files_.begin(), files_.end(), is_free);
@@ -122,9 +123,13 @@ OutsideWaits::File* OutsideWaits::FreeFile() {
     published_->used.store(used + 1);
     return &files_.back();
   }
-  const auto rests = [](const File& file) { return file.state == State::kIdle && !file.is_always; };
-  File* left = find([&](const File& file) { return rests(file) && file.process->dead; });
-  return left != nullptr ? left : find(rests);
+  File* left = find([](const File& file) {
+    return file.process != nullptr && file.process->dead && !file.is_awaited;
+  });
+  if (left != nullptr) return left;
+  return find([](const File& file) {
+    return (file.state == State::kIdle || file.state == State::kShown) && !file.is_always;
+  });
 }
 
 // Null: there is no room, and the file is as any other.
@@ -148,7 +153,12 @@ OutsideWaits::File* OutsideWaits::Publish(std::uint64_t key, std::string name, b
 
 void OutsideWaits::ShowFrom(File& file, std::int64_t ns) {
   file.place->is_connecting.store(file.is_connecting ? 1 : 0);
+  file.shown_from_ns = ns;
   file.place->seen_from_ns.store(file.is_bare ? 0 : ns);
+}
+
+void OutsideWaits::SetBare(File& file, bool is_bare) {
+  if (std::exchange(file.is_bare, is_bare) != is_bare) ShowFrom(file, file.shown_from_ns);
 }
 
 OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& note) {
@@ -162,7 +172,12 @@ OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& not
   if (!copy) return Next::kGoesOn;
   const HostDuration ago = SinceTsc(static_cast<std::uint64_t>(note.args[2]));
   if (event == shm::OutsideEvent::kConnects) {
-    return Connects(task, copy.get(), ago) ? Next::kHasAsked : Next::kGoesOn;
+    if (PublishDevice(task, copy.get())) return Next::kGoesOn;
+    File* file = nullptr;
+    if (Connects(task, copy.get(), &file) != Reached::kOutside) return Next::kGoesOn;
+    const bool is_going_on = note.args[3] != 0;
+    if (!is_going_on && file->is_connecting) Rest(*file);
+    return is_going_on && BeginsToConnect(*file, task, ago) ? Next::kHasAsked : Next::kGoesOn;
   }
   if (event == shm::OutsideEvent::kLooks) {
     BeginsWait(task, copy.get(), EPOLLIN);
@@ -172,11 +187,8 @@ OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& not
   if (file == nullptr) return Next::kGoesOn;
   switch (event) {
     case shm::OutsideEvent::kAsks:
-      // What is still to be taken is no answer to this, and stays to be seen.
-      if (file->state != State::kIdle || file->is_always || file->has_outlasted) break;
-      if (HasInput(copy.get())) break;
-      Ask(*file, task, ago);
-      return Next::kHasAsked;
+      return Asks(*file, task, {copy.get(), ago, note.args[3] != 0}) ? Next::kHasAsked
+                                                                     : Next::kGoesOn;
     case shm::OutsideEvent::kTakes:
       file->has_outlasted = false;
       Rest(*file);
@@ -193,30 +205,50 @@ OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& not
   return Next::kGoesOn;
 }
 
-bool OutsideWaits::AsksRaw(const Task& task, int fd) {
-  LookAtRawConnects(task);
-  File* file = FileOf(fd);
-  if (file == nullptr || file->is_always || file->has_outlasted || HasInput(fd)) return false;
-  // What was taken raw nobody has told of.
-  if (file->state == State::kShown) Rest(*file);
-  if (file->state != State::kIdle) return false;
-  Ask(*file, task);
+bool OutsideWaits::Asks(File& file, const Task& task, const Asking& asking) {
+  // Nobody has looked until it was connected.
+  if (file.is_connecting && !IsBeingConnected(asking.fd)) Rest(file);
+  // What is still to be taken is no answer to this, and stays to be seen.
+  if (file.state != State::kIdle || file.is_always || file.has_outlasted) return false;
+  if (asking.has_input) return false;
+  Ask(file, task, asking.ago);
   return true;
 }
 
-void OutsideWaits::ConnectsRaw(const Task& task, int number) {
-  if (published_ != nullptr) raw_connects_.push_back({task.process, number, 0});
+bool OutsideWaits::AsksRaw(const Task& task, int fd) {
+  LookAtRawConnects(task);
+  File* file = FileOf(fd);
+  if (file == nullptr) return false;
+  // What was taken raw nobody has told of.
+  const bool has_input = HasInput(fd);
+  if (file->state == State::kShown && !has_input) Rest(*file);
+  return Asks(*file, task, {fd, HostDuration(), has_input});
 }
 
-// The kernel carries them out meanwhile. One that it has refused is never found.
+void OutsideWaits::ConnectsRaw(const Task& task, int number, int fd) {
+  struct stat status;
+  if (published_ == nullptr || fstat(fd, &status) != 0 || !S_ISSOCK(status.st_mode)) return;
+  if (raw_connects_.size() >= kMostRawConnects) raw_connects_.pop_front();
+  raw_connects_.push_back({task.process, number, shm::OutsideKeyOf(status)});
+}
+
+// The kernel carries them out meanwhile. One that it has refused is found when it is closed.
 void OutsideWaits::LookAtRawConnects(const Task& task) {
   if (raw_connects_.empty()) return;
-  std::erase_if(raw_connects_, [&](RawConnect& connect) {
+  std::erase_if(raw_connects_, [&](const RawConnect& connect) {
     if (connect.process->dead) return true;
     if (connect.process != task.process) return false;
     const UniqueFd copy = CopyOfDescriptor(*task.process, connect.number);
-    if (copy) Connects(task, copy.get(), HostDuration());
-    return !copy || FileOf(copy.get()) != nullptr || ++connect.looks >= kMostLooks;
+    struct stat status;
+    const bool is_there =
+        copy && fstat(copy.get(), &status) == 0 && shm::OutsideKeyOf(status) == connect.socket;
+    if (!is_there) return true;
+    File* file = nullptr;
+    const Reached reached = Connects(task, copy.get(), &file);
+    if (reached == Reached::kOutside && IsBeingConnected(copy.get())) {
+      BeginsToConnect(*file, task, HostDuration());
+    }
+    return reached != Reached::kNobody;
   });
 }
 
@@ -226,26 +258,33 @@ void OutsideWaits::ShowRest(File& file) {
   ShowFrom(file, 0);
 }
 
-// True: it is being connected, and that takes a while.
-bool OutsideWaits::Connects(const Task& task, int fd, HostDuration ago) {
+// False: it is none.
+bool OutsideWaits::PublishDevice(const Task& task, int fd) {
   struct stat status;
-  if (fstat(fd, &status) != 0) return false;
-  if (S_ISCHR(status.st_mode)) {
-    std::error_code unreadable;
-    const auto path =
-        std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", fd), unreadable);
-    Publish(shm::OutsideKeyOf(status), path.string(), true, task.process);
-    return false;
-  }
+  if (fstat(fd, &status) != 0 || !S_ISCHR(status.st_mode)) return false;
+  std::error_code unreadable;
+  const auto path = std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", fd), unreadable);
+  Publish(shm::OutsideKeyOf(status), path.string(), true, task.process);
+  return true;
+}
+
+OutsideWaits::Reached OutsideWaits::Connects(const Task& task, int fd, File** file) {
+  struct stat status;
+  if (fstat(fd, &status) != 0) return Reached::kNobody;
   const std::optional<Peers::Peer> peer = peers_.Of(*task.process, fd);
-  if (!peer.has_value()) return false;
+  if (!peer.has_value()) return Reached::kNobody;
   const bool is_named = IsNamed(*task.process, peer->name);
-  if (!peer->is_outside && !is_named) return false;
-  File* file = Publish(shm::OutsideKeyOf(status), peer->name, is_named, task.process);
-  if (file == nullptr || !IsBeingConnected(fd)) return false;
-  file->is_connecting = true;
-  file->has_outlasted = false;
-  Ask(*file, task, ago);
+  if (!peer->is_outside && !is_named) return Reached::kRun;
+  *file = Publish(shm::OutsideKeyOf(status), peer->name, is_named, task.process);
+  return *file == nullptr ? Reached::kRun : Reached::kOutside;
+}
+
+bool OutsideWaits::BeginsToConnect(File& file, const Task& task, HostDuration ago) {
+  if (file.is_connecting && file.state == State::kAsked) return false;
+  Rest(file);
+  file.is_connecting = true;
+  file.has_outlasted = false;
+  Ask(file, task, ago);
   return true;
 }
 
@@ -289,7 +328,10 @@ void OutsideWaits::ForEachAt(const Task& task, int fd, Take take) {
   if (files_.empty() || fstat(fd, &status) != 0) return;
   const bool may_be_set = (status.st_mode & S_IFMT) == 0;
   if (!may_be_set) {
-    if (File* file = Find(shm::OutsideKeyOf(status)); file != nullptr) take(*file, fd);
+    if (File* file = Find(shm::OutsideKeyOf(status)); file != nullptr) {
+      SetBare(*file, false);
+      take(*file, fd);
+    }
     return;
   }
   if (!MayMeetOutside(*task.process)) return;
@@ -298,8 +340,9 @@ void OutsideWaits::ForEachAt(const Task& task, int fd, Take take) {
     File* file = copy ? FileOf(copy.get()) : nullptr;
     if (file == nullptr) continue;
     // Who is told of room, too, is told of both at once.
-    const bool tells_of_both = (entry.events & EPOLLOUT) != 0 && !file->is_connecting;
-    if (tells_of_both && !std::exchange(file->is_bare, true)) ShowFrom(*file, 0);
+    constexpr std::uint32_t kBoth = EPOLLIN | EPOLLOUT;
+    const bool tells_of_both = (entry.events & kBoth) == kBoth && !file->is_connecting;
+    SetBare(*file, tells_of_both);
     take(*file, copy.get());
   }
 }
@@ -365,22 +408,22 @@ OutsideWaits::InCall OutsideWaits::LookIntoCall(const Task& task, HostDuration u
   if (device == nullptr || !device->is_always) return InCall::kNo;
   File* call = Publish(shm::OutsideCallKey(task.tid), device->name, false, task.process);
   if (call == nullptr) return InCall::kNo;
-  if (call->is_awaited) return InCall::kWaits;
+  if (call->state == State::kAsked) return InCall::kWaits;
   const HostTime now = clock_();
   if (std::exchange(call->used, used) != used) call->asked_real = now;
   const HostDuration so_far = now - call->asked_real;
   if (so_far < kShortCall) return InCall::kMayWait;
   call->has_outlasted = false;
   Ask(*call, task, so_far);
-  call->is_awaited = true;
-  ++awaited_;
+  call->begins = true;
+  if (!std::exchange(call->is_awaited, true)) ++awaited_;
   return InCall::kWaits;
 }
 
 void OutsideWaits::CallBegan(const Task& task) {
   if (files_.empty()) return;
   File* call = Find(shm::OutsideCallKey(task.tid));
-  if (call != nullptr && call->state == State::kAsked) call->asked_at = task.reached;
+  if (call != nullptr && std::exchange(call->begins, false)) call->asked_at = task.reached;
 }
 
 void OutsideWaits::CallReturns(const Task& task, VirtualTime at) {
@@ -472,11 +515,17 @@ void OutsideWaits::GiveUp(File& file) {
   Rest(file);
 }
 
+// A call whose thread has.
+bool OutsideWaits::HasEnded(const File& file) const {
+  return shm::IsOutsideCall(file.key) &&
+         run_.table.Living(static_cast<pid_t>(file.key & ~shm::kOutsideCall)) == nullptr;
+}
+
 bool OutsideWaits::Show(VirtualTime at, HostTime now) {
   bool has_shown = false;
   for (File& file : files_) {
     if (file.state == State::kCame && file.seen_from <= at) {
-      if (file.is_connecting) {
+      if (file.is_connecting || shm::IsOutsideCall(file.key)) {
         // There is nothing to be taken.
         Rest(file);
       } else {
@@ -486,7 +535,7 @@ bool OutsideWaits::Show(VirtualTime at, HostTime now) {
       has_shown = true;
     } else if (file.state == State::kAsked && file.is_awaited) {
       const bool is_over = now - file.asked_real > SpecOf(*file.process).outside.patience;
-      if (file.process->dead) {
+      if (file.process->dead || HasEnded(file)) {
         Rest(file);
       } else if (is_over) {
         GiveUp(file);

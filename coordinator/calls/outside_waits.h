@@ -51,7 +51,7 @@ class OutsideWaits {
   // `fd` is a copy (true: kHasAsked), or to connect the one with that number. Whom that reaches is
   // found when its process next waits, or sends.
   bool AsksRaw(const Task& task, int fd);
-  void ConnectsRaw(const Task& task, int number);
+  void ConnectsRaw(const Task& task, int number, int fd);
 
   // The thread begins to wait at the file, or the epoll set, of which `fd` is a copy, for such
   // events. What comes by it, or by a member, may be hidden from it: the wait must not end by that
@@ -108,11 +108,13 @@ class OutsideWaits {
         nullptr;  // that has connected it, or asked; of named files: null at first
     State state = State::kIdle;
     bool is_awaited = false, has_outlasted = false;
-    bool is_bare = false;        // nothing of it is hidden
-    bool is_connecting = false;  // what it has asked for is to be connected
+    bool is_bare = false;            // nothing of it is hidden
+    std::int64_t shown_from_ns = 0;  // as its place has it, unless it is bare
+    bool is_connecting = false;      // what it has asked for is to be connected
     VirtualTime asked_at, seen_from;
     HostTime asked_real;
     HostDuration used;         // of a call: by its thread, when it was first found in it
+    bool begins = false;       // of a call: in the turn that is about to end
     UniqueFd copy;             // watched while it is awaited
     std::uint32_t number = 0;  // of the watch
   };
@@ -121,7 +123,18 @@ class OutsideWaits {
   File* FileOf(int fd);
   File* FreeFile();
   File* Publish(std::uint64_t key, std::string name, bool is_always, const Process* process);
-  bool Connects(const Task& task, int fd, HostDuration ago);
+  bool PublishDevice(const Task& task, int fd);
+  // Whom a socket reaches, or is being connected to, as far as it is known by now.
+  enum class Reached { kNobody, kRun, kOutside };
+  Reached Connects(const Task& task, int fd, File** file);
+  // It is being connected: that is waited for. False if it was already.
+  bool BeginsToConnect(File& file, const Task& task, HostDuration ago);
+  struct Asking {
+    int fd;  // a copy
+    HostDuration ago;
+    bool has_input;  // before it was sent
+  };
+  bool Asks(File& file, const Task& task, const Asking& asking);
   void Closes(int fd);
   void LookAtRawConnects(const Task& task);
   void ShowRest(File& file);
@@ -135,9 +148,11 @@ class OutsideWaits {
   void HasCome(File& file, HostTime now, VirtualTime at);
   void Rest(File& file);
   void GiveUp(File& file);
+  bool HasEnded(const File& file) const;
   bool MayMeetOutside(const Process& process) const;
   VirtualTime DueOf(const File& file, HostTime now) const;
   static void ShowFrom(File& file, std::int64_t ns);
+  static void SetBare(File& file, bool is_bare);
 
   RunState& run_;
   Reactor& reactor_;
@@ -150,9 +165,9 @@ class OutsideWaits {
   struct RawConnect {
     const Process* process;
     int number;
-    int looks;
+    std::uint64_t socket;  // its key
   };
-  std::vector<RawConnect> raw_connects_;  // of which nothing is known yet
+  std::deque<RawConnect> raw_connects_;  // of which nothing is known yet
   std::uint32_t watches_ = 0;
 };
 

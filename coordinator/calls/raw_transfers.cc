@@ -69,6 +69,13 @@ std::int64_t BytesOf(const Task& task, const TrappedCall& call) {
   return bytes;
 }
 
+// 0: it is not known.
+std::int64_t BytesToSend(const Task& task, const TrappedCall& call) {
+  if (call.number == SYS_sendto) return static_cast<std::int64_t>(call.args[2]);
+  const bool writes = call.number == SYS_write || call.number == SYS_writev;
+  return writes ? BytesOf(task, call) : 0;
+}
+
 // Whether the kernel answers though the descriptor is not ready: nothing was asked for, or
 // something is wrong.
 bool FileAnswersAtOnce(const Task& task, const TrappedCall& call, const Borrowed& fd, bool reads) {
@@ -147,9 +154,10 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
     const bool of_timer = timers_.Find(task, number).owner != nullptr;
     if (of_timer || !fd.IsEventFd()) activations_.ReceivedRaw(task, of_timer);
   }
-  const bool is_ready = fd.IsReady(events) || (!transfer.reads && fd.HasRoom());
+  const bool is_ready =
+      fd.IsReady(events) || (!transfer.reads && fd.HasRoomFor(BytesToSend(task, call)));
   if (call.number == SYS_connect) {
-    outside_.ConnectsRaw(task, number);
+    outside_.ConnectsRaw(task, number, fd.fd());
   } else if (!transfer.reads && outside_.AsksRaw(task, fd.fd())) {
     descriptors_.BeginAllAgain(run_.table);
   }

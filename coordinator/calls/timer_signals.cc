@@ -118,10 +118,14 @@ void TimerSignals::NoteAccepted(Process& process) {
   }
 }
 
-void TimerSignals::NoteDropped(Process& process, VirtualTime now) const {
+void TimerSignals::NoteAccepted(Process& process, VirtualTime now) const {
   for (const ProcessTimers::SentSignal& sent : process.timers.SentSignals()) {
-    const bool is_dropped = !MayBePending(process, sent) && IsLost(process, sent.number, sent.to);
-    if (is_dropped) process.timers.AcceptAt(sent.timer_id, now, false);
+    if (MayBePending(process, sent)) continue;
+    if (IsLost(process, sent.number, sent.to)) {
+      process.timers.AcceptAt(sent.timer_id, now, false);
+    } else {
+      process.timers.Accept(sent.timer_id);
+    }
   }
 }
 

@@ -25,9 +25,9 @@ class TimerSignals {
   // Finds out which timers' signals have been accepted. While one of a signal's number is pending
   // where it was sent to it counts as not: whose it is cannot be seen.
   static void NoteAccepted(Process& process);
-  // The kernel itself has accepted what did nothing once it was no longer blocked. Goes before
-  // NoteAccepted: what has run out until `now` is such a signal's overruns.
-  void NoteDropped(Process& process, VirtualTime now) const;
+  // The same, and what the kernel has dropped once it was no longer blocked, for it does nothing,
+  // has for overruns what has run out until `now`.
+  void NoteAccepted(Process& process, VirtualTime now) const;
   // Whether the timer's signal that was sent last may be pending still.
   static bool IsPending(const Process& process, std::int64_t timer_id);
 

@@ -53,6 +53,7 @@ Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
     waker_.Wake(task, shm::WakeReason::kSignal, moment);
     task.reply[0] = 1;
   } else if (task.state == TaskState::kUnseen) {
+    outside_.CallReturns(task, moment.at);
     waker_.Wake(task, shm::WakeReason::kGo, moment);
     task.parked = true;
     host_cpu_.Check(task, CpuClockOf(task));

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
@@ -44,16 +45,35 @@ bool Borrowed::IsReady(short events) const {
   return poll(&probe, 1, 0) != 0;
 }
 
-bool Borrowed::HasRoom() const {
+// Datagrams wait for room where they arrive, too, which is for so many of them. How many there are
+// is guessed from the size of the next one.
+bool Borrowed::MayBeFullOf(std::int64_t bytes, std::int64_t used) const {
+  constexpr std::int64_t kBesideEach = 1024;  // of a datagram's memory
+  static const int most = [] {
+    std::ifstream file("/proc/sys/net/unix/max_dgram_qlen");
+    int value = 0;
+    return file >> value ? value : 0;
+  }();
+  return used / (std::max<std::int64_t>(bytes, 0) + kBesideEach) >= most;
+}
+
+bool Borrowed::HasRoomFor(std::int64_t bytes) const {
   std::uint32_t memory[SK_MEMINFO_VARS] = {};
   socklen_t size = sizeof memory;
   if (getsockopt(fd(), SOL_SOCKET, SO_MEMINFO, memory, &size) != 0) return false;
-  const std::uint64_t whole = memory[SK_MEMINFO_SNDBUF];
-  const std::uint64_t used =
-      std::max(memory[SK_MEMINFO_WMEM_ALLOC], memory[SK_MEMINFO_WMEM_QUEUED]);
-  // With less than a quarter used it is for something else that poll says no: there is no
-  // connection yet, or no room where datagrams arrive (unix_writable has the quarter, others more).
-  return used * 4 > whole && used < whole;
+  const std::int64_t whole = memory[SK_MEMINFO_SNDBUF];
+  const std::int64_t used = std::max(memory[SK_MEMINFO_WMEM_ALLOC], memory[SK_MEMINFO_WMEM_QUEUED]);
+  // With less than a quarter used it is for something else that poll says no, as that there is no
+  // connection yet (unix_writable has the quarter, others more).
+  if (used * 4 <= whole || used >= whole) return false;
+  int unsent = 0;  // that a TCP socket keeps at most
+  size = sizeof unsent;
+  if (getsockopt(fd(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, &size) == 0 && unsent > 0) {
+    return false;
+  }
+  const bool is_stream = SocketOption(SO_TYPE, SOCK_STREAM) == SOCK_STREAM;
+  const bool is_local = SocketOption(SO_DOMAIN, AF_UNIX) == AF_UNIX;
+  return is_stream || !is_local || !MayBeFullOf(bytes, used);
 }
 
 bool Borrowed::IsEventFd() const { return IsAnonymous(getpid(), fd(), kEventFd); }

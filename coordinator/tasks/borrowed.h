@@ -29,9 +29,9 @@ class Borrowed {
   bool CanWait() const;
   bool IsNonBlocking() const;
   bool IsReady(short events) const;
-  // Whether a socket takes a write though poll says that it is not ready: poll says so once much
-  // of the buffer is used, a write waits once all of it is.
-  bool HasRoom() const;
+  // Whether a socket takes so many bytes though poll says that it is not ready: poll says so once
+  // much of the buffer is used, a write waits once all of it is. False where it cannot be known.
+  bool HasRoomFor(std::int64_t bytes) const;
   bool IsEventFd() const;
   bool IsTimer() const;
   bool IsTerminal() const;
@@ -47,6 +47,8 @@ class Borrowed {
   std::int64_t SocketTimeout(int option) const;
 
  private:
+  bool MayBeFullOf(std::int64_t bytes, std::int64_t used) const;
+
   UniqueFd fd_;
 };
 
