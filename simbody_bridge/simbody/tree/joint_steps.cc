@@ -15,8 +15,6 @@ using Eigen::VectorXd;
 // What closed forms with springs cost grows with the cube of the speeds that push each other:
 // beyond this short steps are cheaper. Dampers alone have no such limit.
 constexpr std::size_t kMostSpeeds = 10;
-// Of all parts together, where error control wants short steps: that of one with eight speeds.
-constexpr std::size_t kMostCost = 8 * 8 * 8;
 
 bool IsSprung(const JointDrive& drive) { return drive.stiffness > 0; }
 bool Holds(const JointDrive& drive) { return IsSprung(drive) || drive.damping > 0; }
@@ -36,12 +34,6 @@ const double* Take(const double* from, Numbers* numbers) {
 }  // namespace
 
 bool JointSteps::IsLarge(const JointPart& part) const { return part.size() > kMostSpeeds; }
-
-bool JointSteps::IsCostly() const {
-  std::size_t cost = 0;
-  for (const JointPart& part : parts_) cost += part.size() * part.size() * part.size();
-  return cost > kMostCost;
-}
 
 JointSteps::Fit JointSteps::FitOf(const SimbodyTree& tree, std::span<const Wrench> acting) {
   if (!is_divided_) Divide(tree);

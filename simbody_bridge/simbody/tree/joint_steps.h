@@ -28,9 +28,6 @@ class JointSteps : public ControlledSteps<JointSteps> {
   // As long as its limit, in pieces where joints come to rest or break away.
   void TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
 
-  // Once FitOf has been asked: a step costs as much as many of first order.
-  bool IsCostly() const;
-
   // Whether it was TakeControlled that took the step.
   static bool Took(const IslandStep& step) { return !step.course.empty(); }
   // The state in the course of such a step.

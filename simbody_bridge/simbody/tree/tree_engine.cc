@@ -14,10 +14,6 @@ namespace tcs {
 namespace {
 
 constexpr double kFirstTreeTryS = 1e-3;
-// Robots whose steps in closed form cost much, and who are sent to and fro so that error control
-// has such short ones, take some of first order until longer ones are tried again: at half a dozen
-// of such a step in 1 ms they would be slower than real time.
-constexpr double kTooShortS = 0.25e-3, kTriesGrow = 1.1;
 // Where something touches, or is about to.
 constexpr VirtualDuration kContactStep = VirtualDuration::Milliseconds(1);
 
@@ -38,12 +34,6 @@ struct SteppedTree : SimbodyTree {
         steps.TakeControlled(*this, loads, step, accuracy, limit_s);
         return;
       case JointSteps::Fit::kFits:
-        if (step.try_s < kTooShortS && joint_steps.IsCostly()) {
-          took_joints = false;
-          TakeShort(loads, step, std::min(std::min(kContactStep, step.limit).seconds(), limit_s));
-          step.next_try_s = step.try_s * kTriesGrow;
-          return;
-        }
         joint_steps.TakeControlled(*this, loads, step, accuracy, limit_s);
         return;
       case JointSteps::Fit::kTooLarge:
