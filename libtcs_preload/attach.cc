@@ -97,6 +97,7 @@ int Connect() {
 struct Received {
   shm::AttachReply reply{};
   int fds[shm::kMostAttachFds] = {-1, -1, -1, -1};
+  std::int32_t pid = 0, tid = 0;  // of who has asked
 };
 
 Received Exchange(int socket, shm::AttachWants wants) {
@@ -108,7 +109,7 @@ Received Exchange(int socket, shm::AttachWants wants) {
   RawSyscall(SYS_prctl, PR_GET_TID_ADDRESS, Arg(&hello.end_word), 0, 0, 0);
   RawSocketCall(SYS_sendto, socket, Arg(&hello), sizeof hello, MSG_NOSIGNAL, 0, 0);
 
-  Received received;
+  Received received{.pid = hello.pid, .tid = hello.tid};
   iovec iov{&received.reply, sizeof received.reply};
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof received.fds)];
   msghdr message{};
@@ -200,8 +201,8 @@ void Attach(GuestThread& thread) {
   if (received.reply.slot >= shm::kSlotCount) DieWithoutCoordinator("it gave a wrong slot");
   thread.slot = g_slots + received.reply.slot;
   thread.index = received.reply.slot;
-  thread.pid = static_cast<std::int32_t>(RawSyscall(SYS_getpid));
-  thread.tid = static_cast<std::int32_t>(RawSyscall(SYS_gettid));
+  thread.pid = received.pid;
+  thread.tid = received.tid;
   AllowPreemption();
   thread.slot->spin.can_be_asked = OwnSignals() != 0 ? 1 : 0;
   if (is_first && g_header->has_porters != 0) MakePorter();

@@ -66,11 +66,18 @@ Hides HiddenOf(GuestThread& thread, OutsidePlace* place) {
   return is_connecting ? Hides::kAll : Hides::kInput;
 }
 
-bool IsHiddenFromLook(GuestThread& thread, int fd) {
-  OutsidePlace* place = OutsideOf(fd);
+namespace {
+
+bool IsHiddenFromLook(GuestThread& thread, int fd, OutsidePlace* place) {
   if (!IsHidden(thread, place)) return false;
   Tell(thread, OutsideEvent::kLooks, fd);
   return IsHidden(thread, place);
+}
+
+}  // namespace
+
+bool IsHiddenFromLook(GuestThread& thread, int fd) {
+  return IsHiddenFromLook(thread, fd, OutsideOf(fd));
 }
 
 void BeginLookIntoSet(GuestThread& thread, int epoll_fd) {
@@ -84,7 +91,7 @@ void BeginLooks(GuestThread& thread, const pollfd* fds, unsigned long count) {
     OutsidePlace* place = fds[i].events == 0 ? nullptr : OutsideOf(fds[i].fd);
     const bool concerns =
         place != nullptr && ((fds[i].events & POLLIN) != 0 || place->is_connecting.load() != 0);
-    if (concerns) IsHiddenFromLook(thread, fds[i].fd);
+    if (concerns) IsHiddenFromLook(thread, fds[i].fd, place);
   }
 }
 

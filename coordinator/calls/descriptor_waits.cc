@@ -38,8 +38,7 @@ void DescriptorWaits::Add(const Task& task, Copy copy, const Subject& subject,
   if (!copy.fd) return;
   const bool is_waited_for = copy.asked.events != 0;  // or is kept for the call only
   std::uint32_t events = copy.asked.events;
-  const OutsideWaits::Hidden hidden =
-      is_waited_for ? outside_.BeginsWait(task, copy.fd.get(), events) : OutsideWaits::Hidden{};
+  const OutsideWaits::Hidden hidden = outside_.BeginsWait(task, copy.fd.get(), events);
   if (hidden != OutsideWaits::Hidden::kNothing) {
     watched.has_hidden = true;
     events &= SeenOf(hidden);
@@ -124,8 +123,7 @@ void DescriptorWaits::BeginAgain(Task& task) {
   for (std::size_t i = 0; i < watched->fds.size(); ++i) {
     const int fd = watched->fds[i].get();
     const std::uint32_t asked = watched->asked[i].events;
-    const OutsideWaits::Hidden hidden =
-        asked == 0 ? OutsideWaits::Hidden{} : outside_.BeginsWait(task, fd, asked);
+    const OutsideWaits::Hidden hidden = outside_.BeginsWait(task, fd, asked);
     if (hidden == OutsideWaits::Hidden::kNothing) continue;
     watched->has_hidden = true;
     reactor_.Modify(fd, (asked & SeenOf(hidden)) | EPOLLONESHOT, subject);

@@ -348,6 +348,7 @@ void OutsideWaits::ForEachAt(const Task& task, int fd, Take take) {
 }
 
 OutsideWaits::Hidden OutsideWaits::BeginsWait(const Task& task, int fd, std::uint32_t events) {
+  if (events == 0) return Hidden::kNothing;
   LookAtRawConnects(task);
   Hidden hidden = Hidden::kNothing;
   ForEachAt(task, fd, [&](File& file, int copy) {

@@ -145,7 +145,6 @@ bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& n
 bool TimerCalls::BringUpToDate(Process& owner, const Task& asking, std::int64_t id) {
   if (!owner.timers.IsBehind(id, asking.reached)) return false;
   const Moment moment{asking.reached};
-  signals_.NoteAccepted(owner, moment.at);
   const bool wrote = Expire(owner, moment.at);
   if (owner.timers.HasSignals()) signals_.Route(owner, moment);
   return wrote;
@@ -153,6 +152,7 @@ bool TimerCalls::BringUpToDate(Process& owner, const Task& asking, std::int64_t 
 
 // Fires what has run out for one process; true if a descriptor was written to.
 bool TimerCalls::Expire(Process& process, VirtualTime now) {
+  signals_.NoteAccepted(process, now);
   const std::vector<ProcessTimers::RanOut> ran_out = process.timers.Expire(now);
   for (const ProcessTimers::RanOut& timer : ran_out) {
     process.clock.ComeTo(*timer.shown);
@@ -189,7 +189,6 @@ bool TimerCalls::FireDue(Robot& robot, VirtualTime now) {
     if (process.timers.NextExpiry() <= now) {
       if (!process.closed_timers.empty()) DeleteClosed(process);
       process.expired = process.timers.NextExpiry();
-      signals_.NoteAccepted(process, now);
       wrote |= Expire(process, now);
     }
     if (process.timers.HasSignals()) signals_.Route(process, moment);

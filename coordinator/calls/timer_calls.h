@@ -43,7 +43,7 @@ class TimerCalls {
   static void DeleteClosed(Process& process);
   static void Create(Task& task, const shm::Notification& note);
   bool BringUpToDate(Process& owner, const Task& asking, std::int64_t id);
-  static bool Expire(Process& process, VirtualTime now);
+  bool Expire(Process& process, VirtualTime now);
 
   RunState& run_;
   Waker& waker_;

@@ -266,6 +266,12 @@ VirtualTime Engine::KeepWorldNear(const Task& task, VirtualTime horizon) {
   return std::min(horizon, run_.root.DynamicsHorizon());
 }
 
+// The kernel no longer holds the thread, which was kUnseen.
+void Engine::ComeBack(Task& task, Moment moment) {
+  outside_.CallReturns(task, moment.at);
+  waker_.Wake(task, shm::WakeReason::kGo, moment);
+}
+
 // A thread that blocked where the shim could not see it is runnable again once the kernel says so.
 void Engine::PollUnseen() {
   signals_.Poll();
@@ -273,8 +279,7 @@ void Engine::PollUnseen() {
   for (Task& task : run_.table.tasks()) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
     run_.latest = std::max(run_.latest, task.reached);
-    outside_.CallReturns(task, run_.latest);
-    waker_.Wake(task, shm::WakeReason::kGo, {run_.latest});
+    ComeBack(task, {run_.latest});
     task.parked = false;
     dds_.NoteWhetherStopped(*task.process, run_.latest);
   }

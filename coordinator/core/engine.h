@@ -133,6 +133,7 @@ class Engine {
   VirtualTime KeepWorldNear(const Task& task, VirtualTime horizon);
   bool HasJumpedOver();
   VirtualTime HorizonFor(Task& task, VirtualTime* idle_until);
+  void ComeBack(Task& task, Moment moment);
   void PollUnseen();
   bool UnmanagedRun();
   void WaitOutside();

@@ -53,8 +53,7 @@ Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
     waker_.Wake(task, shm::WakeReason::kSignal, moment);
     task.reply[0] = 1;
   } else if (task.state == TaskState::kUnseen) {
-    outside_.CallReturns(task, moment.at);
-    waker_.Wake(task, shm::WakeReason::kGo, moment);
+    ComeBack(task, moment);
     task.parked = true;
     host_cpu_.Check(task, CpuClockOf(task));
     const shm::Notification note = SlotOf(task).note;
@@ -141,19 +140,15 @@ bool Engine::BlockedInKernel() {
   if (state == 'S' && task.parked) return true;
   if (state == 'S' && CutsOff(task)) return task.process->expelled;
   if (state == 't' && debugger_.IsOf(*task.process)) return false;  // and everybody with it
-  if (state == 'S' || state == 'D') {
-    const auto in_call = outside_.LookIntoCall(task, HostNs(HostClockOf(task)));
-    if (in_call == OutsideWaits::InCall::kMayWait) return false;
-    if (in_call == OutsideWaits::InCall::kWaits) {
-      waker_.SetState(task, TaskState::kUnseen);
-      task.parked = false;
-      return true;
-    }
-  }
+  const auto in_call = state == 'S' || state == 'D'
+                           ? outside_.LookIntoCall(task, HostNs(HostClockOf(task)))
+                           : OutsideWaits::InCall::kNo;
+  if (in_call == OutsideWaits::InCall::kMayWait) return false;
+  const bool waits_outside = in_call == OutsideWaits::InCall::kWaits;
   const bool stopped = state == 'T' || state == 't';  // until a signal, or its tracer
   const bool in_vfork =
       state == 'D' && task.in_vfork && spawns_.HasMadeChild(task, {run_.WrittenAt()});
-  if (!stopped && !in_vfork && (state != 'S' || task.slot < 0)) {
+  if (!stopped && !in_vfork && !waits_outside && (state != 'S' || task.slot < 0)) {
     if (state == 'D') {
       ahead_.BringHomeHolders(*task.process, run_.turn.held_looks > kLongHeldLooks);
       held_.LendLevel();
@@ -167,7 +162,7 @@ bool Engine::BlockedInKernel() {
                     : run_.IsFixed()   ? kHeldTurnsFixed
                     : world_.present() ? kHeldTurns
                                        : 0;
-  const bool expected = task.expects_kernel;
+  const bool expected = task.expects_kernel || waits_outside;
   if (!stopped && !expected && run_.turn.held_looks < turns) return false;
   waker_.SetState(task, TaskState::kUnseen);
   task.parked = false;

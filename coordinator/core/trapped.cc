@@ -145,10 +145,7 @@ Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
   }
   // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
   // again, or it came back from a call that nobody saw.
-  if (task->state == TaskState::kUnseen) {
-    outside_.CallReturns(*task, moment.at);
-    waker_.Wake(*task, shm::WakeReason::kGo, moment);
-  }
+  if (task->state == TaskState::kUnseen) ComeBack(*task, moment);
   if (task->state == TaskState::kWaiting) waker_.Wake(*task, shm::WakeReason::kSignal, moment);
   // What it has done in a turn beside others is charged when that has its order.
   if (!task->turns_beside) ChargeUndispatched(*task);

@@ -20,6 +20,22 @@
 
 namespace tcs {
 
+namespace {
+
+// Datagrams wait for room where they arrive, too, which is for so many of them. How many there are
+// is guessed from the size of the next one.
+bool MayBeFullOf(std::int64_t bytes, std::int64_t used) {
+  constexpr std::int64_t kBesideEach = 1024;  // of a datagram's memory
+  static const int most = [] {
+    std::ifstream file("/proc/sys/net/unix/max_dgram_qlen");
+    int value = 0;
+    return file >> value ? value : 0;
+  }();
+  return used / (std::max<std::int64_t>(bytes, 0) + kBesideEach) >= most;
+}
+
+}  // namespace
+
 UniqueFd CopyOfDescriptor(const Process& process, int number) {
   if (process.porter != nullptr) return process.porter->CopyOf(number);
   return UniqueFd(DuplicateFd(process.pidfd.get(), number));
@@ -43,18 +59,6 @@ void Borrowed::AcknowledgeAtOnce() const {
 bool Borrowed::IsReady(short events) const {
   pollfd probe{fd(), events, 0};
   return poll(&probe, 1, 0) != 0;
-}
-
-// Datagrams wait for room where they arrive, too, which is for so many of them. How many there are
-// is guessed from the size of the next one.
-bool Borrowed::MayBeFullOf(std::int64_t bytes, std::int64_t used) const {
-  constexpr std::int64_t kBesideEach = 1024;  // of a datagram's memory
-  static const int most = [] {
-    std::ifstream file("/proc/sys/net/unix/max_dgram_qlen");
-    int value = 0;
-    return file >> value ? value : 0;
-  }();
-  return used / (std::max<std::int64_t>(bytes, 0) + kBesideEach) >= most;
 }
 
 bool Borrowed::HasRoomFor(std::int64_t bytes) const {

@@ -47,8 +47,6 @@ class Borrowed {
   std::int64_t SocketTimeout(int option) const;
 
  private:
-  bool MayBeFullOf(std::int64_t bytes, std::int64_t used) const;
-
   UniqueFd fd_;
 };
 

@@ -34,16 +34,6 @@ void Meanwhile(const char* what, Later later, Wait wait) {
 
 char g_buffer[4096];
 
-// Past the C library, and so past the shim.
-long RawWrite(int fd, const void* bytes, std::size_t size) {
-  long result;
-  __asm__ volatile("syscall"
-                   : "=a"(result)
-                   : "a"(SYS_write), "D"(fd), "S"(bytes), "d"(size)
-                   : "rcx", "r11", "memory");
-  return result;
-}
-
 void Receives(int type) {
   int pair[2];
   EXPECT(socketpair(AF_UNIX, type, 0, pair) == 0, "socketpair");
@@ -128,7 +118,7 @@ void FillsItsBuffer(int type) {
   const auto half = static_cast<std::size_t>(size) / 2;
   std::vector<char> bytes(half);
   const auto write_raw = [&] {
-    EXPECT(RawWrite(pair[1], bytes.data(), half) == static_cast<long>(half), "%d", type);
+    EXPECT(syscall(SYS_write, pair[1], bytes.data(), half) == static_cast<long>(half), "%d", type);
   };
   const std::int64_t start = Now();
   write_raw();

@@ -31,6 +31,12 @@ new_in_shm() {
 library() { ldconfig -p | awk -v pattern="$1" '$0 ~ pattern && !found { found = 1; print $NF }'; }
 # What a run says, without that it waits for a processor, which it may have to beside other tests.
 without_waits() { sed '/^tcsim: other runs of tcsim have/d'; }
+# Becomes a command, at a real-time priority where that may be: in the background or a pipe only. For what is outside of runs,
+# which have the processors, and is to be as quick as on another computer.
+on_time() {
+  if chrt -f 50 true 2>/dev/null; then exec chrt -f 50 "$@"; fi
+  exec "$@"
+}
 # Starts a function beside what goes on already. `all_done` waits for all of these, and ends the test if one has failed.
 started=()
 beside() { "$@" & started+=("$!"); }

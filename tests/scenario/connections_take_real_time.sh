@@ -58,9 +58,7 @@ s.recv(1)
 print(f"{(connected - begun) * 1e3:.3f} {(time.monotonic() - connected) * 1e3:.3f}")
 PY
 # Runs have the processors, and the server is to be as quick as one on another computer.
-on_time=(chrt -f 50)
-"${on_time[@]}" true 2>/dev/null || on_time=()
-"${on_time[@]}" python3 server.py "$port" &
+on_time python3 server.py "$port" &
 server=$!
 for way in waiting timeout loop; do
   timeout 100 "$tcsim" exec -- python3 client.py "$port" "$way" >took-by-client 2>said || fail "$way: $(cat said)"

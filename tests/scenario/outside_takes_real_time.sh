@@ -117,11 +117,9 @@ for _ in range(500):
 print(f"{time.monotonic() - begun:.3f}")
 PY
 # Runs have the processors, and the server is to be as quick as one on another computer.
-on_time=(chrt -f 50)
-"${on_time[@]}" true 2>/dev/null || on_time=()
 serve() {  # SECONDS
   rm -f ready
-  "${on_time[@]}" python3 server.py "$1" 27519 & outside+=("$!")
+  on_time python3 server.py "$1" 27519 & outside+=("$!")
   for _ in $(seq 200); do [[ -e ready ]] && return; sleep 0.05; done
   fail "the server does not begin"
 }

@@ -80,9 +80,7 @@ log=$out/trials/seed-0001/tcsim.log goes names trials "$held" \
 # Nothing to say.
 input_comes() {
   # Others may have all processors at real-time priority, and for so long no input would come.
-  local on_time=(chrt -f 50)
-  "${on_time[@]}" true 2>/dev/null || on_time=()
-  "${on_time[@]}" bash -c 'for i in 1 2 3 4; do sleep 1.5; echo "$i"; done' |
+  on_time bash -c 'for i in 1 2 3 4; do sleep 1.5; echo "$i"; done' |
     "${unprivileged[@]}" "$tcsim" exec -- cat >"$out/comes.stdout" 2>"$out/comes.stderr"
   [[ $(wc -l <"$out/comes.stdout") == 4 ]] || fail "of what is read: $(cat "$out/comes.stdout")"
   ! grep -q 'stood still' "$out/comes.stderr" || fail "input that comes: $(cat "$out/comes.stderr")"
