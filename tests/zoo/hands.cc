@@ -92,7 +92,7 @@ std::string Printed16() {
     urdf.Chain("palm", "f" + std::to_string(i) + "_",
                {{"mcp",
                  "revolute",
-                 {0.1, 0.03 * i, 0.01},
+                 {0.1, 0.045 * i, 0.01},
                  kY,
                  Range(-0.314, 2.23, 0.95, 8.5),
                  Wedge(0.044, "wedge.obj", {0.04, 0.03, 0.03})},

@@ -1,12 +1,14 @@
-// tcs_zoo quick|all|NAME...: loads each robot of the zoo as people do, at the first try and with no
-// variable set, and lets it be free, held and moved on both engines. 0 if that went well. Prints
-// how many times faster than real time that was, on one processor, and with how many steps of the
-// engine a second: reported, and not judged.
+// tcs_zoo quick|all|NAME...|FILE.urdf...: loads each robot of the zoo, or of a file, as people do,
+// at the first try and with no variable set, and lets it be free, held and moved on both engines. 0
+// if that went well. Prints how many times faster than real time that was, on one processor, and
+// with how many steps of the engine a second: reported, and not judged. Robots of files have a
+// fixed base, and no floor.
 #include <fmt/format.h>
 #include <stdlib.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +53,25 @@ std::string Try(const WorldSpec& world, EngineKind engine, Manner manner, Virtua
   return fmt::format("{:.3g} ({:.2g})", times, strtod(end, nullptr) / duration.seconds());
 }
 
+struct Candidate {
+  std::string name;
+  std::filesystem::path scenario;
+};
+
+std::vector<Candidate> CandidatesOf(const std::vector<std::string_view>& names, bool is_all,
+                                    const ModelFolder& folder) {
+  std::vector<Candidate> candidates;
+  for (const Robot& robot : All()) {
+    if (!is_all && std::ranges::find(names, robot.name) == names.end()) continue;
+    candidates.push_back({robot.name, WriteScenario(folder.Path(""), robot)});
+  }
+  for (const std::filesystem::path file : names) {
+    if (file.extension() != ".urdf") continue;
+    candidates.push_back({file.stem().string(), WriteScenarioOf(folder.Path(""), file)});
+  }
+  return candidates;
+}
+
 int Run(const std::vector<std::string_view>& names) {
   for (const char* variable : {"ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"}) unsetenv(variable);
   const bool is_quick = names.front() == "quick";
@@ -58,10 +79,9 @@ int Run(const std::vector<std::string_view>& names) {
   const ModelFolder folder;
   Tried tried;
   int robots = 0, cases = 0;
-  for (const Robot& robot : All()) {
-    if (!is_all && std::ranges::find(names, robot.name) == names.end()) continue;
-    const LoadedRobot loaded = LoadRobot(WriteScenario(folder.Path(""), robot));
-    std::string line = fmt::format("{:16}", robot.name);
+  for (const auto& [name, scenario] : CandidatesOf(names, is_all, folder)) {
+    const LoadedRobot loaded = LoadRobot(scenario);
+    std::string line = fmt::format("{:16}", name);
     if (!loaded.mistake.empty()) {
       ++tried.wrong;
       fmt::print("{} is refused: {}\n", line, loaded.mistake);
@@ -98,7 +118,7 @@ int Run(const std::vector<std::string_view>& names) {
 int main(int argc, char** argv) {
   const std::vector<std::string_view> names(argv + 1, argv + argc);
   if (names.empty()) {
-    fmt::print(stderr, "usage: tcs_zoo quick|all|NAME...\n");
+    fmt::print(stderr, "usage: tcs_zoo quick|all|NAME...|FILE.urdf...\n");
     return 2;
   }
   return tcs::zoo::Run(names);

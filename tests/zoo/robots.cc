@@ -72,4 +72,16 @@ fs::path WriteScenario(const fs::path& folder, const Robot& robot) {
   return scenario;
 }
 
+fs::path WriteScenarioOf(const fs::path& folder, const fs::path& urdf) {
+  fs::path scenario = folder / urdf.stem();
+  scenario += ".yaml";
+  Write(scenario,
+        fmt::format("duration: 5s\n"
+                    "dynamics: {{gravity: [0, 0, -9.81]}}\n"
+                    "models: {{robot: {{urdf: \"{}\", fixed_base: true}}}}\n"
+                    "robots: {{computer: {{clients: {{idle: {{command: [sleep, \"5\"]}}}}}}}}\n",
+                    fs::absolute(urdf).string()));
+  return scenario;
+}
+
 }  // namespace tcs::zoo

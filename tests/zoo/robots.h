@@ -30,6 +30,10 @@ std::vector<Robot> All();
 // they name. Returns the scenario in which it stands on a floor: NAME.yaml in `folder`.
 std::filesystem::path WriteScenario(const std::filesystem::path& folder, const Robot& robot);
 
+// The scenario in which the robot of a URDF file hangs by its base, above no floor.
+std::filesystem::path WriteScenarioOf(const std::filesystem::path& folder,
+                                      const std::filesystem::path& urdf);
+
 // The file that WriteScenario writes for it.
 std::filesystem::path UrdfOf(const std::filesystem::path& folder, const Robot& robot);
 
