@@ -50,13 +50,17 @@ const JointMotion& ServoMotion::End(const VectorXd& middle_rate) {
   return at_end_;
 }
 
-// What remains grows as the parabola through its three values, of which the first is 0.
+// What remains grows as the parabola through its three values, of which the first is 0. Half of how
+// that differs from the straight line to the last one is the error: without springs and dampers it
+// is that of the midpoint rule. The midpoint rule's own push, a constant, is wrong at the end,
+// which is where what is stiff has it from.
 const JointMotion& ServoMotion::Arrive(const VectorXd& end_rate) {
   end_ = Remainder(end_rate, at_end_);
   const VectorXd f1 = 4 * middle_ - end_, f2 = 2 * end_ - 4 * middle_;
   arrived_ = Answer(start_, whole_, drift_ + f1, f2);
-  error_.way = whole_.Way(-middle_, f1, f2);
-  error_.speed = whole_.Speed(-middle_, f1, f2);
+  const VectorXd bend = end_ - 2 * middle_;
+  error_.way = whole_.Way(none_, -bend, bend);
+  error_.speed = whole_.Speed(none_, -bend, bend);
   return arrived_;
 }
 

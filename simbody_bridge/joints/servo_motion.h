@@ -51,7 +51,7 @@ class ServoMotion {
   const JointMotion& Middle(double h);
   const JointMotion& End(const Eigen::VectorXd& middle_rate);
   const JointMotion& Arrive(const Eigen::VectorXd& end_rate);
-  // How far from there the method of second order leads that is in it.
+  // How far off that may be.
   const JointMotion& error() const { return error_; }
   // Those of the last try.
   const JointMotion& middle() const { return at_middle_; }

@@ -19,6 +19,22 @@ constexpr std::size_t kMostSpeeds = 10;
 bool IsSprung(const JointDrive& drive) { return drive.stiffness > 0; }
 bool Holds(const JointDrive& drive) { return IsSprung(drive) || drive.damping > 0; }
 
+// Of each servo, how many times what it can is asked of it.
+void FindAsked(const Forest& forest, std::span<const StateSlots> slots,
+               std::span<const Wrench> acting, std::span<const double> state,
+               std::vector<double>* asked) {
+  asked->clear();
+  for (std::size_t i = 0; i < forest.joints.size(); ++i) {
+    const ForestJoint& joint = forest.joints[i];
+    if (joint.body == kWorldBody) continue;
+    const JointDrive drive = DriveOfJoint(acting, forest.links.size(), i);
+    if (!Holds(drive)) continue;
+    const StateSlots& of = slots[static_cast<std::size_t>(joint.body)];
+    asked->push_back(EffortOf(drive, kNoLimit, state[of.q], state[of.u]) /
+                     joint.joint->limits.effort);
+  }
+}
+
 template <class Numbers>
 void Append(const Numbers& numbers, std::vector<double>* to) {
   to->insert(to->end(), numbers.data(), numbers.data() + numbers.size());
@@ -209,6 +225,25 @@ double JointSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doub
   return GreatestError(
       step, [this](std::size_t i) { return error_[i]; }, slots.size(),
       [&](std::size_t body) { return slots[body]; }, &worst_body_);
+}
+
+// Where a servo reaches its limit, or leaves it: by a straight line, and so little further on that
+// the next step begins behind it.
+double JointSteps::FirstKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step,
+                             double h) {
+  constexpr double kBehind = 1e-5;
+  FindAsked(tree.forest(), tree.slots(), loads.At(step, 0), step.from, &asked_);
+  FindAsked(tree.forest(), tree.slots(), loads.At(step, h), step.to, &asked_at_end_);
+  double first_s = h;
+  for (std::size_t i = 0; i < std::min(asked_.size(), asked_at_end_.size()); ++i) {
+    for (const double limit : {-1.0, 1.0}) {
+      const double start = asked_[i] - limit, end = asked_at_end_[i] - limit;
+      if (start == 0 || (start > 0) == (end > 0)) continue;
+      const double behind = end > 0 ? kBehind : -kBehind;
+      first_s = std::min(first_s, h * (behind - start) / (end - start));
+    }
+  }
+  return first_s;
 }
 
 // How each part began, its springs and dampers, and its push. Then how far all that leads off from

@@ -43,6 +43,7 @@ class JointSteps : public ControlledSteps<JointSteps> {
   void FindMass(SimbodyTree& tree, std::span<const double> state);
   void Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h);
   void EndAtEvent(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
+  double FirstKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step, double h);
   void Place(const SimbodyTree& tree, const IslandStep& step, std::span<double> state);
   double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double h);
   void WriteCourse(SimbodyTree& tree, IslandStep& step);
@@ -56,6 +57,7 @@ class JointSteps : public ControlledSteps<JointSteps> {
   std::vector<double> state_, middle_rate_, end_rate_, error_;
   std::vector<double> way_, speed_;                    // of all
   std::vector<double> turn_, middle_turn_, end_turn_;  // how coordinates grow
+  std::vector<double> asked_, asked_at_end_;           // of servos
   IslandStep piece_;
   ServoStart start_;
   ServoPush push_;

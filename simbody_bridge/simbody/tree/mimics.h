@@ -11,13 +11,7 @@ namespace tcs {
 // The speeds are `reduction` times those of joints that mimic no other.
 void Reduce(const SimbodyTree& tree, Eigen::MatrixXd* reduction);
 
-// The same by rows: each speed is `times` that one of them.
-struct ReducedSpeed {
-  Eigen::Index of = 0;
-  double times = 1;
-  bool is_follower = false;
-};
-// Returns how many there are.
+// The same by rows. Returns how many there are.
 Eigen::Index Reduce(const SimbodyTree& tree, std::vector<ReducedSpeed>* reduced);
 
 }  // namespace tcs

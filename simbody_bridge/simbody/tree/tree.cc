@@ -1,11 +1,13 @@
 #include "simbody_bridge/simbody/tree/tree.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
 #include "simbody_bridge/model/vectors.h"
 #include "simbody_bridge/simbody/tree/link_force.h"
+#include "simbody_bridge/simbody/tree/mimics.h"
 #include "simbody_bridge/simbody/vectors.h"
 
 namespace tcs {
@@ -35,7 +37,6 @@ SimbodyTree::SimbodyTree(const Forest& forest, const std::array<double, 3>& grav
     SimTK::Force::UniformGravity(forces_, matter_, ToVec3(gravity_mps2));
   }
   for (const TreeBody& body : forest.bodies) AddBody(body);
-  AddMimics();
   // Simbody owns the forces.
   SimTK::Force::Custom(forces_, new LinkForce(forest_, bodies_, acting_));
   auto* joints = new JointForce(forest_, bodies_, acting_);
@@ -43,6 +44,9 @@ SimbodyTree::SimbodyTree(const Forest& forest, const std::array<double, 3>& grav
   state_ = system_.realizeTopology();
   system_.realizeModel(state_);
   SetStart();
+  if (std::ranges::any_of(forest.joints, [](const ForestJoint& of) { return of.leader >= 0; })) {
+    Reduce(*this, &reduced_);
+  }
   joints->Measure(matter_, state_);
   joint_force_ = joints;
   contacts_ = std::make_unique<Contacts>(forest_, bodies_);
@@ -69,25 +73,6 @@ void SimbodyTree::AddBody(const TreeBody& body) {
     case JointKind::kFixed:  // never: a forest has none
       bodies_.push_back(SimTK::MobilizedBody::Free(parent, on_parent, mass, turned));
       return;
-  }
-}
-
-// 0 = multiplier * the leader's coordinate - the follower's + offset.
-void SimbodyTree::AddMimics() {
-  for (const ForestJoint& follower : forest_.joints) {
-    if (follower.leader < 0) continue;
-    const Mimic& mimic = *follower.joint->mimic;
-    const ForestJoint& leader = forest_.joints[static_cast<std::size_t>(follower.leader)];
-    const SimTK::Array_<SimTK::MobilizedBodyIndex> bodies = {
-        bodies_[static_cast<std::size_t>(leader.body)].getMobilizedBodyIndex(),
-        bodies_[static_cast<std::size_t>(follower.body)].getMobilizedBodyIndex()};
-    SimTK::Array_<SimTK::MobilizerQIndex> coordinates;
-    coordinates.push_back(SimTK::MobilizerQIndex(0));
-    coordinates.push_back(SimTK::MobilizerQIndex(0));
-    const SimTK::Vector coefficients(SimTK::Vec3(mimic.multiplier, -1, mimic.offset));
-    SimTK::Constraint::CoordinateCoupler(matter_, new SimTK::Function::Linear(coefficients), bodies,
-                                         coordinates);
-    has_mimics_ = true;
   }
 }
 
@@ -139,6 +124,7 @@ void SimbodyTree::Load(std::span<const double> state) {
   state_.updTime() = 0;
   std::copy(state.begin(), state.end(), &state_.updY()[0]);
   is_loaded_ = true;
+  has_mass_ = false;
 }
 
 void SimbodyTree::Evaluate(std::span<const double> state, std::span<const Wrench> acting,
@@ -149,8 +135,34 @@ void SimbodyTree::Evaluate(std::span<const double> state, std::span<const Wrench
     state_.invalidateAll(SimTK::Stage::Dynamics);
     system_.realize(state_, SimTK::Stage::Acceleration);
     std::copy_n(state_.getYDot().getContiguousScalarData(), state.size(), rate);
+    if (!reduced_.empty()) TieToLeaders(rate + state_.getNQ());
   } catch (const std::exception&) {
     std::fill_n(rate, state.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+// Simbody knows nothing of joints that mimic others: its constraints cost more than all the rest.
+// The rates of those that mimic no other are what the forces of all make of the mass of all.
+void SimbodyTree::TieToLeaders(double* rates) {
+  if (!has_mass_) ComputeMass();
+  Eigen::Map<Eigen::VectorXd> all(rates, mass_.rows());
+  const Eigen::VectorXd forces = mass_ * all;
+  Eigen::Index columns = 0;
+  for (const ReducedSpeed& speed : reduced_) columns = std::max(columns, speed.of + 1);
+  tied_mass_.setZero(columns, columns);
+  Eigen::VectorXd tied = Eigen::VectorXd::Zero(columns);
+  for (Eigen::Index i = 0; i < all.size(); ++i) {
+    const ReducedSpeed& own = reduced_[static_cast<std::size_t>(i)];
+    tied[own.of] += own.times * forces[i];
+    for (Eigen::Index k = 0; k < all.size(); ++k) {
+      const ReducedSpeed& other = reduced_[static_cast<std::size_t>(k)];
+      tied_mass_(other.of, own.of) += other.times * own.times * mass_(k, i);
+    }
+  }
+  tied_mass_.llt().solveInPlace(tied);
+  for (Eigen::Index i = 0; i < all.size(); ++i) {
+    const ReducedSpeed& own = reduced_[static_cast<std::size_t>(i)];
+    all[i] = own.times * tied[own.of];
   }
 }
 
@@ -201,17 +213,23 @@ void SimbodyTree::FindMass(std::span<const double> state, Eigen::MatrixXd* mass)
   FindMass(mass);
 }
 
+void SimbodyTree::FindMass(Eigen::MatrixXd* mass) {
+  if (!has_mass_) ComputeMass();
+  *mass = mass_;
+}
+
 // By composite rigid bodies (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 6), in the
 // number of speeds times the depth of the tree: Simbody's calcM multiplies by the matrix as often
 // as it has columns.
-void SimbodyTree::FindMass(Eigen::MatrixXd* mass) {
+void SimbodyTree::ComputeMass() {
   const int all = state_.getNU(), coordinates = state_.getNQ();
-  mass->setZero(all, all);
+  mass_.setZero(all, all);
+  has_mass_ = true;
   if (bodies_.size() == 1) {
     SimTK::Matrix of_one;
     matter_.calcM(state_, of_one);
     for (int i = 0; i < all; ++i) {
-      for (int k = 0; k < all; ++k) (*mass)(i, k) = of_one(i, k);
+      for (int k = 0; k < all; ++k) mass_(i, k) = of_one(i, k);
     }
     return;
   }
@@ -231,8 +249,7 @@ void SimbodyTree::FindMass(Eigen::MatrixXd* mass) {
         const int count = at == body ? k + 1 : static_cast<int>(slots_[at].u_count);
         for (int row = first; row < first + count; ++row) {
           const SimTK::SpatialVec& axis = joint_axes_[static_cast<std::size_t>(row)];
-          (*mass)(row, column) = (*mass)(column, row) =
-              dot(axis[0], force[0]) + dot(axis[1], force[1]);
+          mass_(row, column) = mass_(column, row) = dot(axis[0], force[0]) + dot(axis[1], force[1]);
         }
         const int parent = forest_.bodies[at].parent;
         if (parent == kWorldBody) break;
@@ -266,7 +283,7 @@ void SimbodyTree::NormaliseQuaternions(std::span<double> state) const {
 
 void SimbodyTree::Project(std::span<double> state) {
   NormaliseQuaternions(state);
-  if (!has_mimics_) return;
+  if (reduced_.empty()) return;
   for (const ForestJoint& follower : forest_.joints) {
     if (follower.leader < 0) continue;
     const Mimic& mimic = *follower.joint->mimic;

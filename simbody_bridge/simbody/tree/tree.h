@@ -18,6 +18,13 @@
 
 namespace tcs {
 
+// A speed by those of joints that mimic no other: it is `times` that one of them.
+struct ReducedSpeed {
+  Eigen::Index of = 0;
+  double times = 1;
+  bool is_follower = false;
+};
+
 class SimbodyTree {
  public:
   // `forest` and what it points into outlive this. Throws what Simbody throws if it refuses it.
@@ -101,9 +108,10 @@ class SimbodyTree {
 
  private:
   void AddBody(const TreeBody& body);
-  void AddMimics();
+  void TieToLeaders(double* rates);
   void SetStart();
   void Load(std::span<const double> state);
+  void ComputeMass();
 
   const Forest& forest_;
   SimTK::MultibodySystem system_;
@@ -112,11 +120,12 @@ class SimbodyTree {
   std::vector<SimTK::MobilizedBody> bodies_;
   std::vector<StateSlots> slots_;
   std::vector<double> start_;
-  bool has_mimics_ = false;
+  std::vector<ReducedSpeed> reduced_;        // of each speed, where joints mimic others; else none
   const JointForce* joint_force_ = nullptr;  // Simbody owns it
   std::unique_ptr<Contacts> contacts_;
   SimTK::State state_;
-  bool is_loaded_ = false;
+  bool is_loaded_ = false, has_mass_ = false;
+  Eigen::MatrixXd mass_, tied_mass_;           // of what is loaded; memory of TieToLeaders
   std::vector<SimTK::SpatialVec> joint_axes_;  // of each speed
   std::span<const Wrench> acting_;             // while a state is evaluated
   struct {

@@ -14,6 +14,10 @@ class TreeSteps : public ControlledSteps<TreeSteps> {
   void Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double length_s);
   double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double length_s);
   void EndAtEvent(SimbodyTree& /*tree*/, ModelLoads& /*loads*/, IslandStep& /*step*/) {}
+  double FirstKink(const SimbodyTree& /*tree*/, ModelLoads& /*loads*/, const IslandStep& /*step*/,
+                   double length_s) {
+    return length_s;
+  }
 
   std::vector<double> state_, middle_rate_, end_rate_;
 };

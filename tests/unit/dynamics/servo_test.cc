@@ -246,6 +246,39 @@ TEST(Servos, CostAnArmFewStepsForEachCommand) {
   EXPECT_GE(steps, commands);
 }
 
+// The wrist is much lighter than what its servo can give: its rates follow what pushes it at once,
+// and grow as the arm moves. That is no error of a step.
+TEST(Servos, ThatAreStiffBeyondTheStepsKeepThemNoShorter) {
+  WorldSpec world = WorldOf({Arm()}, {});
+  world.models[0].links[kJoints].inertial = MassAt(0.1, {0, 0.05, 0}, 2e-5);
+  std::int64_t steps = 0;
+  const Sway sway{.milliseconds = 1000, .read_each = VirtualDuration::Milliseconds(10)};
+  (void)Follow(world, sway, &steps);
+  EXPECT_LT(steps, 400);  // 706 where the growth counted as one
+}
+
+// Sent to and fro, they ask for up to thrice what the joints can give. Where that begins and ends
+// is a kink, at which steps end.
+TEST(Servos, CostFewStepsAtTheLimitsOfTheirEffort) {
+  RobotModel wheel = Pendulum(1, 0, 1, 1e-4);
+  wheel.joints[0].kind = JointKind::kContinuous;
+  wheel.joints[0].limits.effort = 1;
+  const auto dynamics = MakeDynamics(WorldOf({wheel}, {}));
+  constexpr int kCommands = 50;
+  int limited = 0;
+  for (int i = 0; i < kCommands; ++i) {
+    const double to = i % 2 == 0 ? 0.3 : -0.3;
+    dynamics->Drive(0, {.stiffness = 5, .position = to, .damping = 0.2}, AtMs(20 * i));
+    for (int ms = 0; ms < 20; ++ms) {
+      const double effort = ReadJoint(*dynamics, 0, AtMs(20 * i + ms)).effort;
+      limited += std::abs(effort) == 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(limited, kCommands / 2);
+  EXPECT_LT(limited, 10 * kCommands);
+  EXPECT_LT(dynamics->work().steps, 580);  // 618 where error control alone looks for the kinks
+}
+
 TEST(Servos, WithStepsOfASetLengthAreStableBeyondTheirLag) {
   IntegratorSpec spec;
   spec.fixed_step = VirtualDuration::Milliseconds(2);
