@@ -25,6 +25,10 @@ constexpr double kLastPart = 0.01;
 // The shortest part of a step that ends because a joint breaks away, or turns round at once.
 constexpr double kLeastPart = 1.0 / 16;
 
+// A damper that alone would take less than this of a speed in a step: what Kutta's method makes of
+// that is off by 1e-8 of the speed.
+constexpr double kSlow = 0.02;
+
 MatrixXd InverseOf(const MatrixXd& matrix) {
   return matrix.llt().solve(MatrixXd::Identity(matrix.rows(), matrix.cols()));
 }
@@ -183,7 +187,8 @@ void JointPart::Begin(const Start& start) {
   Linearise(*from);
 }
 
-// Joints that mimic others move as these do: the mass is that of both.
+// Joints that mimic others move as these do: the mass is that of both. Dampers that are slow beside
+// the step need no closed form, whose cost is the cube of the number of those that have one.
 void JointPart::Linearise(const Start& from) {
   ServoStart& start = motion_.start();
   MatrixXd by_mass = MatrixXd::Zero(reduction_.rows(), reduction_.rows());
@@ -192,12 +197,16 @@ void JointPart::Linearise(const Start& from) {
         moving_ *
         (moving_.transpose() * from.mass * moving_).llt().solve(MatrixXd(moving_.transpose()));
   }
-  start.damping = by_mass * from.by_speed.asDiagonal();
   start.has_springs = !from.by_coordinate.isZero(0);
+  VectorXd dampers = from.by_speed;
+  for (Index row = 0; row < dampers.size() && !start.has_springs; ++row) {
+    if (from.longest_s * dampers[row] * by_mass(row, row) < kSlow) dampers[row] = 0;
+  }
+  start.damping = by_mass * dampers.asDiagonal();
   if (start.has_springs) {
     start.stiffness = by_mass * from.by_coordinate.asDiagonal();
   } else {
-    FindModes(by_mass, from.by_speed, &start.modes);
+    FindModes(by_mass, dampers, &start.modes);
   }
   start.speed = from.speed;
   start.rate = Rate(from.mass, from.rate);

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "simbody_bridge/joints/servo_motion.h"
@@ -49,6 +50,7 @@ class JointPart {
   struct Start {
     Eigen::MatrixXd mass;
     Eigen::VectorXd speed, rate, by_speed, by_coordinate;
+    double longest_s = std::numeric_limits<double>::infinity();  // no try is longer
   };
   void Begin(const Start& start);
   // Tries a step of `h` seconds, in this order, as ServoMotion does.

@@ -131,7 +131,8 @@ bool MujocoJointSteps::Step(const mjModel& model, mjData* data, const Slopes& sl
                   .speed = part.Gather(data->qvel),
                   .rate = part.Gather(data->qacc_smooth),
                   .by_speed = part.Gather(slopes.by_speed.data()),
-                  .by_coordinate = part.Gather(slopes.by_coordinate.data())});
+                  .by_coordinate = part.Gather(slopes.by_coordinate.data()),
+                  .longest_s = left_s});
     }
     double h = left_s;
     if (!Try(model, data, h, find)) return false;

@@ -3,7 +3,8 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 source "$source_root/tests/as_nobody.sh"
 # Threads that runtimes make for themselves, past the shim: ThreadSanitizer's helper (of GCC and of Clang), jemalloc's
 # background thread, one that Python makes through a handle of the C library. None hangs, what their programs do takes
-# its own time to 1 %, with rights and without; and with set costs it is the same in each of so many runs.
+# its own time to 1 % (measured: to 4 %, for what computing costs is the host's), with rights and without; and with set
+# costs it is the same in each of so many runs.
 # Topics: threads, determinism, languages, preloading, rights.
 rounds=${3:-3}
 work=$(mktemp -d)
@@ -14,17 +15,17 @@ install_for_everybody "$build" "$work"
 cp "$source_root"/tests/scenario/runtimes/{turns.cc,purges.c,by_handle.py} .
 chmod -R a+rX .
 
-expect_ns() {  # WHOSE WANTED_NS SAID
+expect_ns() {  # WHOSE WANTED_NS SAID [PERCENT]
   [[ $3 =~ ^[0-9]+$ ]] || fail "$1 says '$3'"
-  (($3 >= $2 && $3 - $2 <= $2 / 100)) || fail "$1: $3 ns, and $2 are right"
+  (($3 >= $2 && $3 - $2 <= $2 / 100 * ${4:-1})) || fail "$1: $3 ns, and $2 are right"
 }
 check() {  # NAME WANTED_NS COMMAND...
   local name=$1 wanted=$2 first='' said i
   shift 2
-  expect_ns "$name, measured" "$wanted" "$(timeout 60 "$tcsim" exec -- "$@")"
+  expect_ns "$name, measured" "$wanted" "$(timeout 60 "$tcsim" exec -- "$@")" 4
   for i in measured fixed; do
     said=$(timeout 60 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $i -- "$@" 2>stderr) || fail "$name: $(cat stderr)"
-    expect_ns "$name, $i, without rights" "$wanted" "$said"
+    expect_ns "$name, $i, without rights" "$wanted" "$said" $([[ $i == fixed ]] || echo 4)
   done
   for ((i = 0; i < rounds; ++i)); do
     said=$(timeout 60 "$tcsim" exec --accounting fixed -- "$@") || fail "$name, fixed: $said"

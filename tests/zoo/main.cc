@@ -56,14 +56,21 @@ std::string Try(const WorldSpec& world, EngineKind engine, Manner manner, Virtua
   return fmt::format("{:.3g} ({:.2g})", times, strtod(end, nullptr) / duration.seconds());
 }
 
-// Of a robot whose packages, if it names any, are beside its own.
+// The folder of the package that the file belongs to, or its own.
+std::filesystem::path PackageOf(const std::filesystem::path& urdf) {
+  std::filesystem::path folder = urdf.parent_path();
+  while (folder.has_relative_path() && !exists(folder / "package.xml")) {
+    folder = folder.parent_path();
+  }
+  return folder.has_relative_path() ? folder : urdf.parent_path();
+}
+
+// The packages that it names are beside its own.
 std::string BesideDart(const std::filesystem::path& urdf, const RobotModel& model) {
-  const std::filesystem::path packages =
-      std::filesystem::absolute(urdf).parent_path().parent_path().parent_path();
+  const std::filesystem::path packages = PackageOf(urdf).parent_path();
   const std::string said = fuzz::Outcome(
       [&] {
-        const std::string file = std::filesystem::absolute(urdf).string();
-        const std::optional<double> off = DifferenceToDart(file, packages.string(), model);
+        const std::optional<double> off = DifferenceToDart(urdf.string(), packages.string(), model);
         return off ? fmt::format("={:.2g}", *off) : "cannot say";
       },
       kMostS);
@@ -121,7 +128,7 @@ int Run(const std::vector<std::string_view>& names) {
         ++cases;
       }
     }
-    if (!urdf.empty()) line += BesideDart(urdf, loaded.world.models.front());
+    if (!urdf.empty()) line += BesideDart(absolute(urdf), loaded.world.models.front());
     ++robots;
     fmt::print("{}\n", line);
     std::fflush(stdout);

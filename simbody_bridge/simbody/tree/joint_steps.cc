@@ -76,8 +76,8 @@ void JointSteps::TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep
 void JointSteps::TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
   piece_ = step;
   for (int piece = 0; piece < kMostStepPieces; ++piece) {
+    piece_.length_s = piece_.try_s = piece_.limit.seconds();
     Begin(tree, loads, piece_);
-    piece_.length_s = piece_.limit.seconds();
     Try(tree, loads, piece_, piece_.length_s);
     if (piece + 1 < kMostStepPieces) EndAtEvent(tree, loads, piece_);
     tree.Project(piece_.to);
@@ -144,7 +144,8 @@ void JointSteps::Begin(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
                            .speed = part.Gather(&step.from[coordinates_]),
                            .rate = part.Gather(&step.from_rate[coordinates_]),
                            .by_speed = part.Gather(by_speed_.data()),
-                           .by_coordinate = part.Gather(by_coordinate_.data())};
+                           .by_coordinate = part.Gather(by_coordinate_.data()),
+                           .longest_s = std::min(step.try_s, step.limit.seconds())};
     // Of a large part only stops are springs.
     if (IsLarge(part)) start.by_coordinate.setZero();
     part.Begin(start);
