@@ -16,12 +16,12 @@ namespace tcs {
 
 namespace {
 
-// The processor time that a thread has to handle the signal, and the real time: others of the host
-// may go first.
+// The processor time that a thread has to handle the signal, and the real time: on a busy host others
+// may go first for many slices.
 constexpr HostDuration kMostWayToGate = HostDuration::Microseconds(100);
+constexpr HostDuration kMostStarved = HostDuration::Seconds(5);
 constexpr HostDuration kGateLook = HostDuration::Microseconds(500);
 constexpr HostDuration kShortGateLook = HostDuration::Microseconds(50);  // at one who is there soon
-constexpr int kMostGateLooks = 400;
 constexpr int kMostAtOnce = 1000;  // events of one instant
 
 // The thread, which is about to go on, sends a signal at once: its shim says so, or the kernel
@@ -115,7 +115,8 @@ void Engine::BringToGate(Task& task) {
   const HostDuration sent = HostNs(HostClockOf(task));
   run_.turn.is_sent_to_gate = task.has_signal = true;
   HostCpu::SendToGate(task.process->pid, task);
-  for (int look = 0; look < kMostGateLooks; ++look) {
+  const HostDuration until = HostNs(CLOCK_MONOTONIC) + kMostStarved;
+  while (HostNs(CLOCK_MONOTONIC) < until) {
     PollEvents(kGateLook, {});
     if (run_.turn.HasSpoken() || !Waker::IsRunnable(task) || task.process->dead) return;
     if (HostNs(HostClockOf(task)) > sent + kMostWayToGate || ThreadState(task.tid) != 'R') return;
@@ -158,7 +159,8 @@ Reactor::Found Engine::AwaitThreads(Moment moment, HostDuration look_every,
   Reactor::Found found;
   std::map<const Task*, HostDuration> first_seen;
   bool awaits = true;
-  for (int look = 0; awaits && look < kMostGateLooks; ++look) {
+  const HostDuration until = HostNs(CLOCK_MONOTONIC) + kMostStarved;
+  while (awaits && HostNs(CLOCK_MONOTONIC) < until) {
     awaits = false;
     for (Task& task : run_.table.tasks()) {
       if (!is_awaited(task)) continue;

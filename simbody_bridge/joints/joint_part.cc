@@ -25,9 +25,9 @@ constexpr double kLastPart = 0.01;
 // The shortest part of a step that ends because a joint breaks away, or turns round at once.
 constexpr double kLeastPart = 1.0 / 16;
 
-// A damper that alone would take less than this of a speed in a step: what Kutta's method makes of
-// that is off by 1e-8 of the speed.
-constexpr double kSlow = 0.02;
+// Dampers that take less than this of a speed in a step, each alone and all together: what Kutta's
+// method makes of that is off by 1e-8 and 4e-6 of the speed.
+constexpr double kSlow = 0.02, kSlowTogether = 0.1;
 
 MatrixXd InverseOf(const MatrixXd& matrix) {
   return matrix.llt().solve(MatrixXd::Identity(matrix.rows(), matrix.cols()));
@@ -197,17 +197,20 @@ void JointPart::Linearise(const Start& from) {
         moving_ *
         (moving_.transpose() * from.mass * moving_).llt().solve(MatrixXd(moving_.transpose()));
   }
-  start.has_springs = !from.by_coordinate.isZero(0);
   VectorXd dampers = from.by_speed;
-  for (Index row = 0; row < dampers.size() && !start.has_springs; ++row) {
-    if (from.longest_s * dampers[row] * by_mass(row, row) < kSlow) dampers[row] = 0;
-  }
-  start.damping = by_mass * dampers.asDiagonal();
+  start.has_springs = !from.by_coordinate.isZero(0);
   if (start.has_springs) {
     start.stiffness = by_mass * from.by_coordinate.asDiagonal();
   } else {
+    // The sum of what each takes is no less than what the fastest motion of all loses.
+    const VectorXd takes = from.longest_s * by_mass.diagonal().cwiseProduct(dampers);
+    const auto is_slow = (takes.array() < kSlow).eval();
+    if (is_slow.select(takes.array(), 0.0).sum() < kSlowTogether) {
+      dampers = is_slow.select(0.0, dampers);
+    }
     FindModes(by_mass, dampers, &start.modes);
   }
+  start.damping = by_mass * dampers.asDiagonal();
   start.speed = from.speed;
   start.rate = Rate(from.mass, from.rate);
   excess_[0] = Excess(from.mass, from.rate, start.rate);

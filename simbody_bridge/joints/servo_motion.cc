@@ -51,9 +51,9 @@ const JointMotion& ServoMotion::End(const VectorXd& middle_rate) {
 }
 
 // What remains grows as the parabola through its three values, of which the first is 0. Half of how
-// that differs from the straight line to the last one is the error: without springs and dampers it
-// is that of the midpoint rule. The midpoint rule's own push, a constant, is wrong at the end,
-// which is where what is stiff has it from.
+// that differs from the straight line to the last one is the error: of speeds without springs and
+// dampers it is that of the midpoint rule. Where joints are stiff, only the push at the end counts,
+// and the midpoint rule's own, a constant, is wrong there.
 const JointMotion& ServoMotion::Arrive(const VectorXd& end_rate) {
   end_ = Remainder(end_rate, at_end_);
   const VectorXd f1 = 4 * middle_ - end_, f2 = 2 * end_ - 4 * middle_;

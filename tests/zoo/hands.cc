@@ -85,7 +85,9 @@ std::string Tendons24() {
   return urdf.Text();
 }
 
-// Four fingers of meshes that are in the palm where they start.
+// Four fingers of meshes that are in the palm where they start, as far apart as those of the hand
+// in whose style they are: side by side they would rub along whole faces (docs/LIMITATIONS.md,
+// MuJoCo).
 std::string Printed16() {
   Urdf urdf("printed16", "palm", Wedge(0.3, "wedge.stl", {0.12, 0.1, 0.05}));
   for (int i = 0; i < 4; ++i) {

@@ -65,7 +65,7 @@ std::filesystem::path PackageOf(const std::filesystem::path& urdf) {
   return folder.has_relative_path() ? folder : urdf.parent_path();
 }
 
-// The packages that it names are beside its own.
+// The packages that the file names are beside its own.
 std::string BesideDart(const std::filesystem::path& urdf, const RobotModel& model) {
   const std::filesystem::path packages = PackageOf(urdf).parent_path();
   const std::string said = fuzz::Outcome(
@@ -92,7 +92,9 @@ std::vector<Candidate> CandidatesOf(const std::vector<std::string_view>& names, 
   }
   for (const std::filesystem::path file : names) {
     if (file.extension() != ".urdf") continue;
-    candidates.push_back({file.stem().string(), WriteScenarioOf(folder.Path(""), file), file});
+    candidates.push_back(
+        {file.stem().string(),
+         WriteScenarioOf(folder.Path("of" + std::to_string(candidates.size())), file), file});
   }
   return candidates;
 }

@@ -73,6 +73,7 @@ fs::path WriteScenario(const fs::path& folder, const Robot& robot) {
 }
 
 fs::path WriteScenarioOf(const fs::path& folder, const fs::path& urdf) {
+  fs::create_directories(folder);
   fs::path scenario = folder / urdf.stem();
   scenario += ".yaml";
   Write(scenario,

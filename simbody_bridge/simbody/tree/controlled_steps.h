@@ -17,8 +17,8 @@ namespace tcs {
 //   Try(tree, loads, step, seconds): a step of that length
 //   ErrorOf(tree, step, seconds): how far that may be off (GreatestError)
 //   EndAtEvent(tree, loads, step): of one that is good enough, to end it earlier
-//   FirstKink(tree, loads, step, seconds): of one that is not, the end of a shorter one that has no
-//     kink of what acts within it; else its length
+//   FirstKink(tree, loads, step, seconds): of one that is not, when what acts has its first kink;
+//     else its length
 template <class Method>
 class ControlledSteps {
  public:
@@ -54,7 +54,7 @@ class ControlledSteps {
   std::size_t worst_body_ = 0;
 
  private:
-  // A try that ends nearer to a kink than this is not wrong because of it.
+  // A kink in the last thousandth of a step is not what made it fail.
   static constexpr double kShorter = 0.999;
 
   Method& method() { return static_cast<Method&>(*this); }
@@ -65,7 +65,7 @@ class ControlledSteps {
     method().Try(tree, loads, step, seconds);
     if (length->Judge(method().ErrorOf(tree, step, seconds), accuracy, &step)) return true;
     const double kink_s = method().FirstKink(tree, loads, step, seconds);
-    if (kink_s < kShorter * seconds) length->Set(std::max(kink_s, kShortestStepS));
+    if (kink_s < kShorter * seconds) length->Set(std::max(kink_s, kMostShrinking * seconds));
     return false;
   }
 };

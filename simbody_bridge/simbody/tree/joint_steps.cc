@@ -1,6 +1,7 @@
 #include "simbody_bridge/simbody/tree/joint_steps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "simbody_bridge/joints/joint_groups.h"
@@ -19,19 +20,18 @@ constexpr std::size_t kMostSpeeds = 10;
 bool IsSprung(const JointDrive& drive) { return drive.stiffness > 0; }
 bool Holds(const JointDrive& drive) { return IsSprung(drive) || drive.damping > 0; }
 
-// Of each servo, how many times what it can is asked of it.
+// For each joint, what its servo is asked for by what it can give; 0 without a servo.
 void FindAsked(const Forest& forest, std::span<const StateSlots> slots,
                std::span<const Wrench> acting, std::span<const double> state,
                std::vector<double>* asked) {
-  asked->clear();
+  asked->assign(forest.joints.size(), 0);
   for (std::size_t i = 0; i < forest.joints.size(); ++i) {
     const ForestJoint& joint = forest.joints[i];
     if (joint.body == kWorldBody) continue;
     const JointDrive drive = DriveOfJoint(acting, forest.links.size(), i);
-    if (!Holds(drive)) continue;
     const StateSlots& of = slots[static_cast<std::size_t>(joint.body)];
-    asked->push_back(EffortOf(drive, kNoLimit, state[of.q], state[of.u]) /
-                     joint.joint->limits.effort);
+    if (!Holds(drive) || of.u_count != 1) continue;
+    (*asked)[i] = EffortOf(drive, kNoLimit, state[of.q], state[of.u]) / joint.joint->limits.effort;
   }
 }
 
@@ -236,7 +236,8 @@ double JointSteps::FirstKink(const SimbodyTree& tree, ModelLoads& loads, const I
   FindAsked(tree.forest(), tree.slots(), loads.At(step, 0), step.from, &asked_);
   FindAsked(tree.forest(), tree.slots(), loads.At(step, h), step.to, &asked_at_end_);
   double first_s = h;
-  for (std::size_t i = 0; i < std::min(asked_.size(), asked_at_end_.size()); ++i) {
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    if (!std::isfinite(asked_at_end_[i])) continue;
     for (const double limit : {-1.0, 1.0}) {
       const double start = asked_[i] - limit, end = asked_at_end_[i] - limit;
       if (start == 0 || (start > 0) == (end > 0)) continue;

@@ -57,7 +57,7 @@ class JointSteps : public ControlledSteps<JointSteps> {
   std::vector<double> state_, middle_rate_, end_rate_, error_;
   std::vector<double> way_, speed_;                    // of all
   std::vector<double> turn_, middle_turn_, end_turn_;  // how coordinates grow
-  std::vector<double> asked_, asked_at_end_;           // of servos
+  std::vector<double> asked_, asked_at_end_;           // memory of FirstKink
   IslandStep piece_;
   ServoStart start_;
   ServoPush push_;

@@ -45,7 +45,7 @@ SimbodyTree::SimbodyTree(const Forest& forest, const std::array<double, 3>& grav
   system_.realizeModel(state_);
   SetStart();
   if (std::ranges::any_of(forest.joints, [](const ForestJoint& of) { return of.leader >= 0; })) {
-    Reduce(*this, &reduced_);
+    reduced_count_ = Reduce(*this, &reduced_);
   }
   joints->Measure(matter_, state_);
   joint_force_ = joints;
@@ -141,16 +141,15 @@ void SimbodyTree::Evaluate(std::span<const double> state, std::span<const Wrench
   }
 }
 
-// Simbody knows nothing of joints that mimic others: its constraints cost more than all the rest.
-// The rates of those that mimic no other are what the forces of all make of the mass of all.
+// Joints that mimic others are no constraints of Simbody's: those took two fifths of a step. The
+// forces on all joints (the mass matrix times their rates) and the mass matrix are reduced to the
+// joints that mimic no other, whose rates give those of all.
 void SimbodyTree::TieToLeaders(double* rates) {
   if (!has_mass_) ComputeMass();
   Eigen::Map<Eigen::VectorXd> all(rates, mass_.rows());
   const Eigen::VectorXd forces = mass_ * all;
-  Eigen::Index columns = 0;
-  for (const ReducedSpeed& speed : reduced_) columns = std::max(columns, speed.of + 1);
-  tied_mass_.setZero(columns, columns);
-  Eigen::VectorXd tied = Eigen::VectorXd::Zero(columns);
+  tied_mass_.setZero(reduced_count_, reduced_count_);
+  Eigen::VectorXd tied = Eigen::VectorXd::Zero(reduced_count_);
   for (Eigen::Index i = 0; i < all.size(); ++i) {
     const ReducedSpeed& own = reduced_[static_cast<std::size_t>(i)];
     tied[own.of] += own.times * forces[i];
@@ -224,13 +223,13 @@ void SimbodyTree::FindMass(Eigen::MatrixXd* mass) {
 void SimbodyTree::ComputeMass() {
   const int all = state_.getNU(), coordinates = state_.getNQ();
   mass_.setZero(all, all);
-  has_mass_ = true;
   if (bodies_.size() == 1) {
     SimTK::Matrix of_one;
     matter_.calcM(state_, of_one);
     for (int i = 0; i < all; ++i) {
       for (int k = 0; k < all; ++k) mass_(i, k) = of_one(i, k);
     }
+    has_mass_ = true;
     return;
   }
   matter_.realizeCompositeBodyInertias(state_);
@@ -261,6 +260,7 @@ void SimbodyTree::ComputeMass() {
       }
     }
   }
+  has_mass_ = true;
 }
 
 void SimbodyTree::FindJointAxes() {

@@ -18,7 +18,8 @@
 
 namespace tcs {
 
-// A speed by those of joints that mimic no other: it is `times` that one of them.
+// A speed as a multiple of a leader's: `times` the speed number `of` among those of joints that
+// mimic no other.
 struct ReducedSpeed {
   Eigen::Index of = 0;
   double times = 1;
@@ -88,7 +89,7 @@ class SimbodyTree {
   double LatenessOfTouch(std::span<const double> state, double late_m, double met_m);
 
   // What was evaluated last, for who goes on from there: `state` as Simbody has it, realized to
-  // Acceleration.
+  // Acceleration. Its accelerations are as if no joint mimicked another.
   const Forest& forest() const { return forest_; }
   const SimTK::SimbodyMatterSubsystem& matter() const { return matter_; }
   const SimTK::State& evaluated() const { return state_; }
@@ -120,7 +121,8 @@ class SimbodyTree {
   std::vector<SimTK::MobilizedBody> bodies_;
   std::vector<StateSlots> slots_;
   std::vector<double> start_;
-  std::vector<ReducedSpeed> reduced_;        // of each speed, where joints mimic others; else none
+  std::vector<ReducedSpeed> reduced_;  // of each speed, where joints mimic others; else none
+  Eigen::Index reduced_count_ = 0;
   const JointForce* joint_force_ = nullptr;  // Simbody owns it
   std::unique_ptr<Contacts> contacts_;
   SimTK::State state_;

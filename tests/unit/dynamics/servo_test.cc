@@ -246,8 +246,8 @@ TEST(Servos, CostAnArmFewStepsForEachCommand) {
   EXPECT_GE(steps, commands);
 }
 
-// The wrist is much lighter than what its servo can give: its rates follow what pushes it at once,
-// and grow as the arm moves. That is no error of a step.
+// The servo of the wrist is strong beside its inertia: the wrist follows what pushes it at once,
+// and what pushes it grows as the arm moves. That is no error of a step.
 TEST(Servos, ThatAreStiffBeyondTheStepsKeepThemNoShorter) {
   WorldSpec world = WorldOf({Arm()}, {});
   world.models[0].links[kJoints].inertial = MassAt(0.1, {0, 0.05, 0}, 2e-5);
