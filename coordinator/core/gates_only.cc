@@ -16,13 +16,13 @@ namespace tcs {
 
 namespace {
 
-// The processor time that a thread has to handle the signal, and the real time: on a busy host others
-// may go first for many slices.
+// The processor time that a thread has to handle the signal, and the real time: on a busy host
+// others may go first for many slices.
 constexpr HostDuration kMostWayToGate = HostDuration::Microseconds(100);
 constexpr HostDuration kMostStarved = HostDuration::Seconds(5);
 constexpr HostDuration kGateLook = HostDuration::Microseconds(500);
 constexpr HostDuration kShortGateLook = HostDuration::Microseconds(50);  // at one who is there soon
-constexpr int kMostAtOnce = 1000;  // events of one instant
+constexpr int kMostAtOnce = 1000;                                        // events of one instant
 
 // The thread, which is about to go on, sends a signal at once: its shim says so, or the kernel
 // carries out the call.
