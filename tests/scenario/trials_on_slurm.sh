@@ -8,7 +8,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
 # Topics: trials, slurm, determinism.
 trap 'end_slurm; pkill -9 -f "$mark|$out"; rm -rf "$out"' EXIT
 many=$((${TCS_SLURM_TRIALS:-16} / 2))
-trials=("$tcsim" trials "$out/scenario.yaml" --accounting fixed --trials "$many" --vary duration=1s,1100ms --vary csv_period=10ms)
+trials=("$tcsim" trials "$out/scenario.yaml" --accounting fixed --trials "$many" --vary duration=3s,3100ms --vary csv_period=10ms)
 start_slurm 4
 timeout 400 "${trials[@]}" --out "$out/local" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 
@@ -60,7 +60,7 @@ echo "$((2 * many)) trials in $SECONDS s; $((SECONDS - killed_at)) of them since
 ((status == 0)) || fail "exit status $status: $(cat "$out/said")"
 
 # Trial I has the seed 1 + I / 2, and the first value or the second one in turn.
-value=(1s 1100ms)
+value=(3s 3100ms)
 named="seed $((1 + lost / 2)) with duration=${value[lost % 2]} csv_period=10ms"
 grep -q "^tcsim: $named was lost on node n2 (.*); it is run again" "$out/said" || fail "$named: $(cat "$out/said")"
 # Where a busy machine makes another node seem dead, its trials are lost as well, and treated alike.
