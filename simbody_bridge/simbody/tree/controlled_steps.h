@@ -64,8 +64,9 @@ class ControlledSteps {
     const double seconds = length->seconds();
     method().Try(tree, loads, step, seconds);
     if (length->Judge(method().ErrorOf(tree, step, seconds), accuracy, &step)) return true;
+    // A try that has gone astray has kinks anywhere: error control goes as far by itself.
     const double kink_s = method().FirstKink(tree, loads, step, seconds);
-    if (kink_s < kShorter * seconds) length->Set(std::max(kink_s, kMostShrinking * seconds));
+    if (kink_s > length->seconds() && kink_s < kShorter * seconds) length->Set(kink_s);
     return false;
   }
 };
