@@ -6,7 +6,7 @@ namespace tcs {
 namespace {
 
 constexpr double kSafety = 0.9;  // of the length that the error of the last one promises
-constexpr double kMostGrowth = 5, kLeastShrinking = 0.5;
+constexpr double kMostGrowth = 5, kMostShrinking = 0.1, kLeastShrinking = 0.5;
 
 }  // namespace
 

@@ -67,9 +67,6 @@ double KuttaError(const IslandStep& step, const std::vector<double>& middle_rate
 // Shorter steps lead nowhere: islands count whole nanoseconds.
 inline constexpr double kShortestStepS = 1e-9;
 
-// A step that fails is tried again no shorter than this much of it: what it says of why is far off.
-inline constexpr double kMostShrinking = 0.1;
-
 // How long a step is that error control lets be as long as it can.
 class StepLength {
  public:

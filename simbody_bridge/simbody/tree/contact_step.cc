@@ -90,25 +90,10 @@ void ContactStep::Assemble(double h) {
     forces(i) -= h * by_coordinate_[slot] * speeds_(i);
     whole(i, i) += h * by_speed_[slot] + h * h * by_coordinate_[slot];
   }
-  mass_.setZero(reduced_count_, reduced_count_);
-  force_.setZero(reduced_count_);
-  for (Eigen::Index i = 0; i < forces.size(); ++i) {
-    const ReducedSpeed& own = reduced_[static_cast<std::size_t>(i)];
-    force_[own.of] += own.times * forces[i];
-    for (Eigen::Index k = 0; k < forces.size(); ++k) {
-      const ReducedSpeed& other = reduced_[static_cast<std::size_t>(k)];
-      mass_(other.of, own.of) += other.times * own.times * whole(k, i);
-    }
-  }
+  ReduceSystem(reduced_, reduced_count_, whole, forces, &mass_, &force_);
 }
 
-Eigen::VectorXd ContactStep::WholeChange() const {
-  Eigen::VectorXd whole(static_cast<Eigen::Index>(reduced_.size()));
-  for (std::size_t i = 0; i < reduced_.size(); ++i) {
-    whole[static_cast<Eigen::Index>(i)] = reduced_[i].times * change_[reduced_[i].of];
-  }
-  return whole;
-}
+Eigen::VectorXd ContactStep::WholeChange() const { return SpreadToAll(reduced_, change_); }
 
 // Whether one more servo would give more than it can at the end of the step.
 bool ContactStep::ReachLimits(double h) {

@@ -36,4 +36,27 @@ void Reduce(const SimbodyTree& tree, Eigen::MatrixXd* reduction) {
   }
 }
 
+void ReduceSystem(std::span<const ReducedSpeed> reduced, Eigen::Index count,
+                  const Eigen::MatrixXd& mass, const Eigen::VectorXd& forces,
+                  Eigen::MatrixXd* reduced_mass, Eigen::VectorXd* reduced_forces) {
+  reduced_mass->setZero(count, count);
+  reduced_forces->setZero(count);
+  for (Eigen::Index i = 0; i < forces.size(); ++i) {
+    const ReducedSpeed& own = reduced[static_cast<std::size_t>(i)];
+    (*reduced_forces)[own.of] += own.times * forces[i];
+    for (Eigen::Index k = 0; k < forces.size(); ++k) {
+      const ReducedSpeed& other = reduced[static_cast<std::size_t>(k)];
+      (*reduced_mass)(other.of, own.of) += other.times * own.times * mass(k, i);
+    }
+  }
+}
+
+Eigen::VectorXd SpreadToAll(std::span<const ReducedSpeed> reduced, const Eigen::VectorXd& of_them) {
+  Eigen::VectorXd all(static_cast<Eigen::Index>(reduced.size()));
+  for (std::size_t i = 0; i < reduced.size(); ++i) {
+    all[static_cast<Eigen::Index>(i)] = reduced[i].times * of_them[reduced[i].of];
+  }
+  return all;
+}
+
 }  // namespace tcs

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "simbody_bridge/simbody/tree/tree.h"
@@ -13,5 +14,12 @@ void Reduce(const SimbodyTree& tree, Eigen::MatrixXd* reduction);
 
 // The same by rows. Returns how many there are.
 Eigen::Index Reduce(const SimbodyTree& tree, std::vector<ReducedSpeed>* reduced);
+
+// What the mass matrix and the forces of all speeds are for those `count` that mimic no other.
+void ReduceSystem(std::span<const ReducedSpeed> reduced, Eigen::Index count,
+                  const Eigen::MatrixXd& mass, const Eigen::VectorXd& forces,
+                  Eigen::MatrixXd* reduced_mass, Eigen::VectorXd* reduced_forces);
+// Changes or rates of all speeds, from those of the ones that mimic no other.
+Eigen::VectorXd SpreadToAll(std::span<const ReducedSpeed> reduced, const Eigen::VectorXd& of_them);
 
 }  // namespace tcs

@@ -147,22 +147,10 @@ void SimbodyTree::Evaluate(std::span<const double> state, std::span<const Wrench
 void SimbodyTree::TieToLeaders(double* rates) {
   if (!has_mass_) ComputeMass();
   Eigen::Map<Eigen::VectorXd> all(rates, mass_.rows());
-  const Eigen::VectorXd forces = mass_ * all;
-  tied_mass_.setZero(reduced_count_, reduced_count_);
-  Eigen::VectorXd tied = Eigen::VectorXd::Zero(reduced_count_);
-  for (Eigen::Index i = 0; i < all.size(); ++i) {
-    const ReducedSpeed& own = reduced_[static_cast<std::size_t>(i)];
-    tied[own.of] += own.times * forces[i];
-    for (Eigen::Index k = 0; k < all.size(); ++k) {
-      const ReducedSpeed& other = reduced_[static_cast<std::size_t>(k)];
-      tied_mass_(other.of, own.of) += other.times * own.times * mass_(k, i);
-    }
-  }
+  Eigen::VectorXd tied;
+  ReduceSystem(reduced_, reduced_count_, mass_, mass_ * all, &tied_mass_, &tied);
   tied_mass_.llt().solveInPlace(tied);
-  for (Eigen::Index i = 0; i < all.size(); ++i) {
-    const ReducedSpeed& own = reduced_[static_cast<std::size_t>(i)];
-    all[i] = own.times * tied[own.of];
-  }
+  all = SpreadToAll(reduced_, tied);
 }
 
 void SimbodyTree::EvaluateOrRecall(std::span<const double> state, std::span<const Wrench> acting,

@@ -257,8 +257,8 @@ TEST(Servos, ThatAreStiffBeyondTheStepsKeepThemNoShorter) {
   EXPECT_LT(steps, 400);  // 706 where the growth counted as one
 }
 
-// Sent to and fro, they ask for up to thrice what the joints can give. Where that begins and ends
-// is a kink, at which steps end.
+// A servo that is sent to and fro asks for up to thrice what its joint can give. Where that begins
+// and ends is a kink, at which steps end.
 TEST(Servos, CostFewStepsAtTheLimitsOfTheirEffort) {
   RobotModel wheel = Pendulum(1, 0, 1, 1e-4);
   wheel.joints[0].kind = JointKind::kContinuous;
