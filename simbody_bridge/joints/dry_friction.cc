@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <utility>
 
+#include "simbody_bridge/joints/branches.h"
+
 namespace tcs {
 namespace {
 
@@ -144,9 +146,10 @@ class HoldsInSystem final : public Holds {
       if (!is_held[static_cast<std::size_t>(speed)]) moving_.push_back(speed);
     }
     if (!moving_.empty()) {
-      const MatrixXd moving = system_(moving_, moving_);
-      const VectorXd moved = moving.llt().solve(VectorXd(pushes_(moving_)));
-      change_(moving_) = moved;
+      moving_system_ = system_(moving_, moving_);
+      moved_ = pushes_(moving_);
+      SolveByBranches(&moving_system_, &moved_);
+      change_(moving_) = moved_;
     }
     w_ = speeds_ + change_(rubbing_);
     for (std::size_t i = 0; i < rubbing_.size(); ++i) {
@@ -166,7 +169,8 @@ class HoldsInSystem final : public Holds {
   const std::vector<Index>& rubbing_;
   const VectorXd& speeds_;
   VectorXd& change_;
-  VectorXd pushes_;
+  VectorXd pushes_, moved_;
+  MatrixXd moving_system_;
   std::vector<Index> moving_;
 };
 

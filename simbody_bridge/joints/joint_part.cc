@@ -184,6 +184,7 @@ void JointPart::Begin(const Start& start) {
     sliding_.setZero(reduction_.rows());
   }
   rest_at_s_.assign(slips_.size(), kNever);
+  h_ = 0;
   Linearise(*from);
 }
 
@@ -237,6 +238,7 @@ VectorXd JointPart::Excess(const MatrixXd& mass, const VectorXd& rate,
 }
 
 const JointMotion& JointPart::Middle(double h) {
+  if (h == h_) return motion_.middle();
   h_ = h;
   return motion_.Middle(h);
 }
@@ -266,7 +268,8 @@ double JointPart::FirstEvent() {
     double& rest_s = rest_at_s_[static_cast<std::size_t>(column)];
     if (end < -kRestRadps) {
       rest_s = Crossing(column, h_);
-    } else if (middle < -kRestRadps && sign * SpeedAfter(column, h_ / 2) < 0) {
+    } else if (double rate = 0;
+               middle < -kRestRadps && sign * SpeedAfter(column, h_ / 2, &rate) < 0) {
       rest_s = Crossing(column, h_ / 2);
     } else if (end < 0) {
       rest_s = h_;
@@ -276,34 +279,36 @@ double JointPart::FirstEvent() {
   return std::min(first_s, FirstBreakaway());
 }
 
-double JointPart::SpeedAfter(Index column, double seconds) {
-  return MotionAfter(motion_.start(), push_, seconds, &finder_)
-      .speed[leaders_[static_cast<std::size_t>(column)]];
+double JointPart::SpeedAfter(Index column, double seconds, double* rate) {
+  const ServoStart& start = motion_.start();
+  const Index leader = leaders_[static_cast<std::size_t>(column)];
+  const JointMotion motion = MotionAfter(start, push_, seconds);
+  *rate = RateAlong(start, push_, seconds, motion, leader);
+  return motion.speed[leader];
 }
 
-// What slides comes to rest before `until_s`, perhaps at once: first the decade of that time is
-// looked for, then it is found by regula falsi (Illinois).
+// What slides comes to rest before `until_s`, perhaps at once: by Newton's method, and where that
+// leads out of what is known, by halves, at first of the decades.
 double JointPart::Crossing(Index column, double until_s) {
+  constexpr int kTries = 60;
   const double sign = SignOf(column);
-  const double start = sign * motion_.start().speed[leaders_[static_cast<std::size_t>(column)]];
+  const Index leader = leaders_[static_cast<std::size_t>(column)];
+  const double start = sign * motion_.start().speed[leader];
   double low = 0, high = until_s;
-  double at_low = start, at_high = sign * SpeedAfter(column, until_s);
-  while (high > 10 * std::max(low, kInstantS / 10)) {
-    const double between = std::sqrt(std::max(low, kInstantS / 10) * high);
-    const double at = sign * SpeedAfter(column, between);
-    (at > 0 ? low : high) = between;
-    (at > 0 ? at_low : at_high) = at;
-  }
-  constexpr int kTries = 40;
-  for (int i = 0; i < kTries && high - low > kInstantS / 4 && at_low > 0; ++i) {
-    const double between = low + (high - low) * at_low / (at_low - at_high);
-    const double at = sign * SpeedAfter(column, between);
-    if (std::abs(at) < kRestRadps) return between;
-    if (at > 0) {
-      low = between, at_low = at, at_high /= 2;
-    } else {
-      high = between, at_high = at, at_low /= 2;
+  double next = start > 0 ? -start / (sign * motion_.start().rate[leader]) : 0;
+  for (int i = 0; i < kTries && high - low > kInstantS / 4; ++i) {
+    if (!(next > low && next < high)) {
+      const double least = std::max(low, kInstantS / 10);
+      next = high > 10 * least ? std::sqrt(least * high) : (low + high) / 2;
     }
+    double rate = 0;
+    const double at = sign * SpeedAfter(column, next, &rate);
+    const bool has_slid = start > 0 || low > 0;
+    if (has_slid && std::abs(at) < kRestRadps) return next;
+    (at > 0 ? low : high) = next;
+    const double change = -at / (sign * rate);
+    next += change;
+    if (has_slid && std::abs(change) < kInstantS / 8 && next > low && next < high) return next;
   }
   return start > 0 ? high : std::max(high, kLeastPart * h_);
 }

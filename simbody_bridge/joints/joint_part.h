@@ -80,7 +80,7 @@ class JointPart {
   void Linearise(const Start& start);
   Eigen::VectorXd Excess(const Eigen::MatrixXd& mass, const Eigen::VectorXd& rate,
                          const Eigen::VectorXd& with_friction) const;
-  double SpeedAfter(Eigen::Index column, double seconds);
+  double SpeedAfter(Eigen::Index column, double seconds, double* rate);
   double Crossing(Eigen::Index column, double until_s);
   double FirstBreakaway() const;
 
@@ -101,7 +101,6 @@ class JointPart {
   // By how much more than is there each column that is held had to be held.
   std::array<Eigen::VectorXd, 3> excess_;  // at the start, in the middle, at the end
   std::vector<double> rest_at_s_;          // of each column
-  ResponseFinder finder_;
 };
 
 }  // namespace tcs

@@ -42,26 +42,9 @@ struct LinearResponse {
 // The same for dampers alone, however many speeds there are, in their number squared.
 void FindResponse(const DampedModes& modes, double seconds, LinearResponse* response);
 
-// Finds responses, by their series for a fraction of the time and by doubling that (Skaflestad and
-// Wright, The scaling and modified squaring method for matrix functions related to the exponential,
-// Applied Numerical Mathematics 59, 2009). Memory alone: what it finds depends on the arguments.
-class ResponseFinder {
- public:
-  // To a push of `seconds` > 0, and to one half as long unless `half` is null. NaN where numbers
-  // are too large.
-  void Find(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& damping, double seconds,
-            LinearResponse* whole, LinearResponse* half);
-
- private:
-  void Begin(int size);
-  void Double();
-
-  // In units of the time that is reached.
-  Eigen::MatrixXd stiffness_, damping_;
-  // The upper left block of the exponential, and the upper right ones of all.
-  Eigen::MatrixXd a_;
-  std::array<Eigen::MatrixXd, 4> b_, doubled_;
-  Eigen::MatrixXd next_, over_next_, term_;
-};
+// To a push of `seconds` > 0, and to one half as long unless `half` is null. NaN where numbers are
+// too large.
+void FindResponse(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& damping, double seconds,
+                  LinearResponse* whole, LinearResponse* half);
 
 }  // namespace tcs

@@ -14,11 +14,10 @@ JointMotion Answer(const ServoStart& start, const LinearResponse& response, cons
 
 }  // namespace
 
-JointMotion MotionAfter(const ServoStart& start, const ServoPush& push, double after_s,
-                        ResponseFinder* finder) {
+JointMotion MotionAfter(const ServoStart& start, const ServoPush& push, double after_s) {
   LinearResponse response;
   if (start.has_springs) {
-    finder->Find(start.stiffness, start.damping, after_s, &response, nullptr);
+    FindResponse(start.stiffness, start.damping, after_s, &response, nullptr);
   } else {
     FindResponse(start.modes, after_s, &response);
   }
@@ -26,12 +25,23 @@ JointMotion MotionAfter(const ServoStart& start, const ServoPush& push, double a
   return Answer(start, response, share * push.f1, share * share * push.f2);
 }
 
+double RateAlong(const ServoStart& start, const ServoPush& push, double after_s,
+                 const JointMotion& motion, Eigen::Index speed) {
+  const double share = after_s / push.seconds;
+  double rate = start.rate[speed] + share * (push.f1[speed] + share * push.f2[speed]) -
+                start.damping.row(speed).dot(motion.speed - start.speed);
+  if (start.has_springs) {
+    rate -= start.stiffness.row(speed).dot(motion.way - after_s * start.speed);
+  }
+  return rate;
+}
+
 // The springs push back as much as the joints go on as fast as they are; what they do on top of
 // that is in the response.
 const JointMotion& ServoMotion::Middle(double h) {
   none_.setZero(start_.speed.size());
   if (start_.has_springs) {
-    finder_.Find(start_.stiffness, start_.damping, h, &whole_, &half_);
+    FindResponse(start_.stiffness, start_.damping, h, &whole_, &half_);
     drift_ = -h * (start_.stiffness * start_.speed);
   } else {
     FindResponse(start_.modes, h, &whole_);
@@ -39,12 +49,13 @@ const JointMotion& ServoMotion::Middle(double h) {
     drift_ = none_;
   }
   at_middle_ = Answer(start_, half_, drift_ / 2, none_);
+  ahead_ = Answer(start_, whole_, drift_, none_);
   return at_middle_;
 }
 
 const JointMotion& ServoMotion::End(const VectorXd& middle_rate) {
   middle_ = Remainder(middle_rate, at_middle_);
-  at_end_ = Answer(start_, whole_, drift_, none_);
+  at_end_ = ahead_;
   at_end_.way += whole_.Way(2 * middle_, none_, none_);
   at_end_.speed += whole_.Speed(2 * middle_, none_, none_);
   return at_end_;

@@ -37,8 +37,11 @@ struct ServoPush {
 };
 
 // `after_s` from the beginning of such a step.
-JointMotion MotionAfter(const ServoStart& start, const ServoPush& push, double after_s,
-                        ResponseFinder* finder);
+JointMotion MotionAfter(const ServoStart& start, const ServoPush& push, double after_s);
+
+// How fast one speed grows there.
+double RateAlong(const ServoStart& start, const ServoPush& push, double after_s,
+                 const JointMotion& motion, Eigen::Index speed);
 
 class ServoMotion {
  public:
@@ -53,6 +56,8 @@ class ServoMotion {
   const JointMotion& Arrive(const Eigen::VectorXd& end_rate);
   // How far off that may be.
   const JointMotion& error() const { return error_; }
+  // Where it leads if nothing but springs and dampers changes what pushes.
+  const JointMotion& ahead() const { return ahead_; }
   // Those of the last try.
   const JointMotion& middle() const { return at_middle_; }
   const JointMotion& arrived() const { return arrived_; }
@@ -69,11 +74,10 @@ class ServoMotion {
   Eigen::VectorXd Remainder(const Eigen::VectorXd& rate, const JointMotion& motion) const;
 
   ServoStart start_;
-  ResponseFinder finder_;
   LinearResponse whole_, half_;
   Eigen::VectorXd drift_, none_;
   Eigen::VectorXd middle_, end_;  // what remains there
-  JointMotion at_middle_, at_end_, arrived_, error_;
+  JointMotion at_middle_, ahead_, at_end_, arrived_, error_;
 };
 
 }  // namespace tcs

@@ -35,9 +35,15 @@ bool StepLength::Judge(double error, double accuracy, IslandStep* step) {
   const double promised_s = kSafety * h * std::cbrt(accuracy / error);  // infinite without error
   if (error <= accuracy) {
     step->length_s = h;
-    // What a limit did not let it try it has no reason to give up, nor to hope for more.
-    const double most_s = is_limited_ ? step->try_s : kMostGrowth * h;
-    step->next_try_s = std::clamp(promised_s, h, std::max(h, most_s));
+    if (!is_limited_) {
+      step->next_try_s = std::clamp(promised_s, h, kMostGrowth * h);
+      return true;
+    }
+    // What a limit did not let it try it has no reason to give up, nor to hope for more: much
+    // shorter than that it says nothing of it.
+    const bool is_telling = kMostGrowth * h >= step->try_s;
+    step->next_try_s =
+        is_telling ? std::clamp(promised_s, h, std::max(h, step->try_s)) : step->try_s;
     return true;
   }
   is_limited_ = false;

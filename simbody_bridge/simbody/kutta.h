@@ -78,6 +78,11 @@ class StepLength {
   // To try.
   double seconds() const { return seconds_; }
   void Set(double seconds) { seconds_ = seconds; }
+  // Shorter than error control has it, for the sake of what happens then.
+  void Limit(double seconds) {
+    seconds_ = seconds;
+    is_limited_ = true;
+  }
 
   // Whether a try with this error is good enough: then the step is as long, and knows how long to
   // try the next one; else another length is to be tried. Throws std::runtime_error where no step

@@ -1,10 +1,10 @@
 #include "simbody_bridge/simbody/tree/contact_step.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "simbody_bridge/joints/branches.h"
 #include "simbody_bridge/joints/dry_friction.h"
 #include "simbody_bridge/joints/joint_groups.h"
 #include "simbody_bridge/simbody/tree/mimics.h"
@@ -141,7 +141,8 @@ void ContactStep::Solve(double h) {
     }
   }
   if (rubbing_.empty()) {
-    change_ = system_.llt().solve(impulses_);
+    change_ = impulses_;
+    SolveByBranches(&system_, &change_);
   } else {
     impulse_bounds_ = h * bounds_;
     FindHeldChange(system_, impulses_, rubbing_, rubbing_speed_, impulse_bounds_, &at_bound_,

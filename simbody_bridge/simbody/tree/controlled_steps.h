@@ -17,7 +17,12 @@ namespace tcs {
 //   Try(tree, loads, step, seconds): a step of that length
 //   ErrorOf(tree, step, seconds): how far that may be off (GreatestError)
 //   EndAtEvent(tree, loads, step): of one that is good enough, to end it earlier
-//   FirstKink(tree, loads, step, seconds): of one that is not, when what acts has its first kink;
+//   PredictKink(tree, loads, step, seconds): when what acts has its first kink, as far as that can
+//   be
+//     told before a step of that length is tried; else its length
+//   MissedKink(tree, loads, step, seconds): of one that is good enough and was to end behind that
+//     kink, when it comes, if that is later; else its length
+//   FirstKink(tree, loads, step, seconds): of one that is not good enough, when the first kink was;
 //     else its length
 template <class Method>
 class ControlledSteps {
@@ -30,8 +35,18 @@ class ControlledSteps {
     StepLength length(step,
                       std::min(limit_s, std::max(kShortestStepS, tree.LongestStepFrom(step.from))));
     if (length.seconds() != step.limit.seconds()) length.Set(WholeNanoseconds(length.seconds()));
-    while (!IsGoodEnough(tree, loads, step, accuracy, &length)) {
-      length.Set(WholeNanoseconds(length.seconds()));
+    const double most_s = length.seconds();
+    const double kink_s = method().PredictKink(tree, loads, step, most_s);
+    if (kink_s < most_s) length.Limit(kink_s);
+    TryUntilGoodEnough(tree, loads, step, accuracy, &length);
+    if (kink_s < most_s) {
+      // Else small steps would come ever nearer to it.
+      const double reached_s = step.length_s;
+      const double missed_s = method().MissedKink(tree, loads, step, reached_s);
+      if (missed_s > reached_s && missed_s < std::min(2 * reached_s, most_s)) {
+        length.Limit(missed_s);
+        TryUntilGoodEnough(tree, loads, step, accuracy, &length);
+      }
     }
     method().EndAtEvent(tree, loads, step);
     tree.Project(step.to);
@@ -54,20 +69,19 @@ class ControlledSteps {
   std::size_t worst_body_ = 0;
 
  private:
-  // A kink in the last thousandth of a step is not what made it fail.
-  static constexpr double kShorter = 0.999;
-
   Method& method() { return static_cast<Method&>(*this); }
 
-  bool IsGoodEnough(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
-                    StepLength* length) {
-    const double seconds = length->seconds();
-    method().Try(tree, loads, step, seconds);
-    if (length->Judge(method().ErrorOf(tree, step, seconds), accuracy, &step)) return true;
-    // A try that has gone astray has kinks anywhere: error control goes as far by itself.
-    const double kink_s = method().FirstKink(tree, loads, step, seconds);
-    if (kink_s > length->seconds() && kink_s < kShorter * seconds) length->Set(kink_s);
-    return false;
+  void TryUntilGoodEnough(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
+                          StepLength* length) {
+    for (;;) {
+      const double seconds = length->seconds();
+      method().Try(tree, loads, step, seconds);
+      if (length->Judge(method().ErrorOf(tree, step, seconds), accuracy, &step)) return;
+      // A try that has gone astray has kinks anywhere: error control goes as far by itself.
+      const double kink_s = method().FirstKink(tree, loads, step, seconds);
+      if (kink_s > length->seconds() && kink_s < seconds) length->Limit(kink_s);
+      length->Set(WholeNanoseconds(length->seconds()));
+    }
   }
 };
 

@@ -20,21 +20,6 @@ constexpr std::size_t kMostSpeeds = 10;
 bool IsSprung(const JointDrive& drive) { return drive.stiffness > 0; }
 bool Holds(const JointDrive& drive) { return IsSprung(drive) || drive.damping > 0; }
 
-// For each joint, what its servo is asked for by what it can give; 0 without a servo.
-void FindAsked(const Forest& forest, std::span<const StateSlots> slots,
-               std::span<const Wrench> acting, std::span<const double> state,
-               std::vector<double>* asked) {
-  asked->assign(forest.joints.size(), 0);
-  for (std::size_t i = 0; i < forest.joints.size(); ++i) {
-    const ForestJoint& joint = forest.joints[i];
-    if (joint.body == kWorldBody) continue;
-    const JointDrive drive = DriveOfJoint(acting, forest.links.size(), i);
-    const StateSlots& of = slots[static_cast<std::size_t>(joint.body)];
-    if (!Holds(drive) || of.u_count != 1) continue;
-    (*asked)[i] = EffortOf(drive, kNoLimit, state[of.q], state[of.u]) / joint.joint->limits.effort;
-  }
-}
-
 template <class Numbers>
 void Append(const Numbers& numbers, std::vector<double>* to) {
   to->insert(to->end(), numbers.data(), numbers.data() + numbers.size());
@@ -228,24 +213,48 @@ double JointSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doub
       [&](std::size_t body) { return slots[body]; }, &worst_body_);
 }
 
-// Where a servo reaches its limit, or leaves it: by a straight line, and so little further on that
-// the next step begins behind it.
+// As all goes on if nothing but springs and dampers changes what pushes the joints: that takes none
+// of the engine's rates, and is as good as a short step needs.
+double JointSteps::PredictKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step,
+                               double h) {
+  constexpr int kTries = 16;
+  constexpr double kFar = 10;
+  double before_s = 0, behind_s = 0;  // it is between these
+  kinks_.Begin(tree, loads.At(step, 0), step.from);
+  for (int i = 0; i < kTries; ++i) {
+    for (JointPart& part : parts_) {
+      part.Middle(h);
+      part.Scatter(part.motion().ahead(), way_.data(), speed_.data());
+    }
+    Place(tree, step, state_);
+    const double kink_s = kinks_.First(tree, loads.At(step, h), state_, h);
+    double next_s = AfterKink(kink_s);
+    if (kink_s < h) {
+      if (next_s >= h) break;
+      behind_s = h;
+      // A straight line from afar: what a servo is asked for may have grown with the time squared.
+      if ((i == 0 && next_s < h / kFar) || next_s <= before_s) {
+        next_s = std::sqrt(std::max(next_s, before_s) * h);
+      }
+    } else {
+      if (h >= behind_s / 2) break;
+      before_s = h;
+      next_s = std::sqrt(before_s * behind_s);
+    }
+    h = WholeNanoseconds(next_s);
+  }
+  return h;
+}
+
+double JointSteps::MissedKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step,
+                              double h) {
+  const double kink_s = kinks_.Missed(tree, loads.At(step, h), step.to, h);
+  return kink_s > h ? AfterKink(kink_s) : h;
+}
+
 double JointSteps::FirstKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step,
                              double h) {
-  constexpr double kBehind = 1e-5;
-  FindAsked(tree.forest(), tree.slots(), loads.At(step, 0), step.from, &asked_);
-  FindAsked(tree.forest(), tree.slots(), loads.At(step, h), step.to, &asked_at_end_);
-  double first_s = h;
-  for (std::size_t i = 0; i < asked_.size(); ++i) {
-    if (!std::isfinite(asked_at_end_[i])) continue;
-    for (const double limit : {-1.0, 1.0}) {
-      const double start = asked_[i] - limit, end = asked_at_end_[i] - limit;
-      if (start == 0 || (start > 0) == (end > 0)) continue;
-      const double behind = end > 0 ? kBehind : -kBehind;
-      first_s = std::min(first_s, h * (behind - start) / (end - start));
-    }
-  }
-  return first_s;
+  return AfterKink(kinks_.First(tree, loads.At(step, h), step.to, h));
 }
 
 // How each part began, its springs and dampers, and its push. Then how far all that leads off from
@@ -313,7 +322,7 @@ void JointSteps::Within(const SimbodyTree& tree, const IslandStep& step, double 
     }
     course = Take(course, &push_.f1);
     course = Take(course, &push_.f2);
-    const JointMotion motion = MotionAfter(start_, push_, after_s, &finder_);
+    const JointMotion motion = MotionAfter(start_, push_, after_s);
     part.Scatter(motion, way_.data(), speed_.data());
   }
   Place(tree, step, *state);

@@ -10,6 +10,7 @@
 
 #include "simbody_bridge/joints/joint_part.h"
 #include "simbody_bridge/simbody/tree/controlled_steps.h"
+#include "simbody_bridge/simbody/tree/servo_kinks.h"
 
 namespace tcs {
 
@@ -43,6 +44,8 @@ class JointSteps : public ControlledSteps<JointSteps> {
   void FindMass(SimbodyTree& tree, std::span<const double> state);
   void Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h);
   void EndAtEvent(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
+  double PredictKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step, double h);
+  double MissedKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step, double h);
   double FirstKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step, double h);
   void Place(const SimbodyTree& tree, const IslandStep& step, std::span<double> state);
   double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double h);
@@ -57,11 +60,10 @@ class JointSteps : public ControlledSteps<JointSteps> {
   std::vector<double> state_, middle_rate_, end_rate_, error_;
   std::vector<double> way_, speed_;                    // of all
   std::vector<double> turn_, middle_turn_, end_turn_;  // how coordinates grow
-  std::vector<double> asked_, asked_at_end_;           // memory of FirstKink
+  ServoKinks kinks_;
   IslandStep piece_;
   ServoStart start_;
   ServoPush push_;
-  ResponseFinder finder_;
 };
 
 }  // namespace tcs

@@ -1,10 +1,10 @@
 #include "simbody_bridge/simbody/tree/tree.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
+#include "simbody_bridge/joints/branches.h"
 #include "simbody_bridge/model/vectors.h"
 #include "simbody_bridge/simbody/tree/link_force.h"
 #include "simbody_bridge/simbody/tree/mimics.h"
@@ -149,7 +149,7 @@ void SimbodyTree::TieToLeaders(double* rates) {
   Eigen::Map<Eigen::VectorXd> all(rates, mass_.rows());
   Eigen::VectorXd tied;
   ReduceSystem(reduced_, reduced_count_, mass_, mass_ * all, &tied_mass_, &tied);
-  tied_mass_.llt().solveInPlace(tied);
+  SolveByBranches(&tied_mass_, &tied);
   all = SpreadToAll(reduced_, tied);
 }
 

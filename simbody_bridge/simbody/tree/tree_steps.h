@@ -14,6 +14,14 @@ class TreeSteps : public ControlledSteps<TreeSteps> {
   void Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double length_s);
   double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double length_s);
   void EndAtEvent(SimbodyTree& /*tree*/, ModelLoads& /*loads*/, IslandStep& /*step*/) {}
+  double PredictKink(const SimbodyTree& /*tree*/, ModelLoads& /*loads*/, const IslandStep& /*step*/,
+                     double length_s) {
+    return length_s;
+  }
+  double MissedKink(const SimbodyTree& /*tree*/, ModelLoads& /*loads*/, const IslandStep& /*step*/,
+                    double length_s) {
+    return length_s;
+  }
   double FirstKink(const SimbodyTree& /*tree*/, ModelLoads& /*loads*/, const IslandStep& /*step*/,
                    double length_s) {
     return length_s;

@@ -15,9 +15,8 @@ using Eigen::VectorXd;
 MatrixXd One(double x) { return MatrixXd::Constant(1, 1, x); }
 
 LinearResponse Respond(const MatrixXd& stiffness, const MatrixXd& damping, double seconds) {
-  ResponseFinder finder;
   LinearResponse response;
-  finder.Find(stiffness, damping, seconds, &response, nullptr);
+  FindResponse(stiffness, damping, seconds, &response, nullptr);
   return response;
 }
 
@@ -105,9 +104,8 @@ TEST(LinearResponse, OfCoupledJointsIsThatOfManySmallSteps) {
 TEST(LinearResponse, ToHalfAPushIsFoundOnTheWay) {
   const auto [stiffness, damping] = MakeCoupled();
   for (const double seconds : {1e-6, 1e-3, 0.5}) {
-    ResponseFinder finder;
     LinearResponse whole, half;
-    finder.Find(stiffness, damping, seconds, &whole, &half);
+    FindResponse(stiffness, damping, seconds, &whole, &half);
     const LinearResponse alone = Respond(stiffness, damping, seconds / 2);
     EXPECT_EQ(half.seconds, seconds / 2);
     for (std::size_t k = 0; k < 4; ++k) {
