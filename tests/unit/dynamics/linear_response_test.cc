@@ -101,6 +101,29 @@ TEST(LinearResponse, OfCoupledJointsIsThatOfManySmallSteps) {
   EXPECT_LT((response.Speed(f0, f1, f2) - v).norm(), 1e-11 * v.norm());
 }
 
+// Sizes have code of their own.
+TEST(LinearResponse, OfAnyNumberOfJointsIsThatOfEachWhereNothingCouplesThem) {
+  for (int size = 1; size <= 13; ++size) {
+    VectorXd springs(size), dampers(size), f0(size), f1(size), f2(size);
+    for (int i = 0; i < size; ++i) {
+      springs[i] = 100 * i * i;
+      dampers[i] = 30 - 2 * i;
+      f0[i] = 1 + i, f1[i] = 2 - i, f2[i] = 0.5 * i;
+    }
+    LinearResponse whole, half;
+    FindResponse(springs.asDiagonal(), dampers.asDiagonal(), 0.1, &whole, &half);
+    for (int i = 0; i < size; ++i) {
+      for (const LinearResponse& of_all : {whole, half}) {
+        const LinearResponse alone = Respond(One(springs[i]), One(dampers[i]), of_all.seconds);
+        EXPECT_NEAR(of_all.Way(f0, f1, f2)[i], alone.Way(One(f0[i]), One(f1[i]), One(f2[i]))[0],
+                    1e-13);
+        EXPECT_NEAR(of_all.Speed(f0, f1, f2)[i], alone.Speed(One(f0[i]), One(f1[i]), One(f2[i]))[0],
+                    1e-12);
+      }
+    }
+  }
+}
+
 TEST(LinearResponse, ToHalfAPushIsFoundOnTheWay) {
   const auto [stiffness, damping] = MakeCoupled();
   for (const double seconds : {1e-6, 1e-3, 0.5}) {

@@ -276,7 +276,7 @@ TEST(Servos, CostFewStepsAtTheLimitsOfTheirEffort) {
   }
   EXPECT_GT(limited, kCommands / 2);
   EXPECT_LT(limited, 10 * kCommands);
-  EXPECT_LT(dynamics->work().steps, 580);  // 618 where error control alone looks for the kinks
+  EXPECT_LT(dynamics->work().steps, 200);  // 618 where error control alone looks for the kinks
 }
 
 TEST(Servos, WithStepsOfASetLengthAreStableBeyondTheirLag) {
