@@ -43,6 +43,7 @@ void SignalWakes::WakeFor(Task& task, const SignalSets& sets, std::uint64_t* tak
 }
 
 void SignalWakes::WakeForSignals(Process& process, Moment moment) {
+  looked_at_ = moment;
   std::uint64_t taken = 0;
   for (Task* task : run_.table.ThreadsOf(process)) {
     HoldUntilDispatched(*task);
@@ -55,6 +56,7 @@ void SignalWakes::WakeForSignal(Process& process, const SentSignal& sent, Moment
   const bool is_known = sent.number > 0 && (sent.tid == 0 || receiver != nullptr) &&
                         waker_.counts().for_signals() == 0;
   if (!is_known) return WakeForSignals(process, moment);
+  looked_at_ = moment;
   const std::uint64_t bit = SignalBit(sent.number);
   std::uint64_t taken = 0;
   const std::vector<Task*> threads =

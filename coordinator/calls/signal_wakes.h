@@ -5,6 +5,9 @@
 // For the coordinator's thread only.
 #pragma once
 
+#include <optional>
+#include <utility>
+
 #include "coordinator/calls/sent_signal.h"
 #include "coordinator/host/active_threads.h"
 #include "coordinator/os/host.h"
@@ -30,6 +33,9 @@ class SignalWakes {
   // Without levels the kernel keeps a signal from a thread whose call is trapped (os/trap.cc), so
   // only a look finds one that came from outside. One from inside is told by its sender.
   bool HasSignalForTrapped(Task& task) const;
+  // When somebody's threads were looked at last, none where nobody's were since this was asked. One
+  // that was found without a signal may have begun to handle it.
+  std::optional<Moment> TakeLook() { return std::exchange(looked_at_, std::nullopt); }
 
  private:
   void HoldUntilDispatched(Task& task);
@@ -41,6 +47,7 @@ class SignalWakes {
   Waker& waker_;
   ActiveThreads& active_;
   UndispatchedThreads& undispatched_;
+  std::optional<Moment> looked_at_;
 };
 
 }  // namespace tcs

@@ -470,9 +470,7 @@ void Engine::EndTurn(Task& task) {
 void Engine::TellOthersOf(Task& task, Moment call, bool looks_again) {
   const Moment stop{task.cpu->progress};
   TimerCalls::ExpireCpu(task);
-  const bool sent_signal = task.follow_up == FollowUp::kSignals;
   if (task.follow_up != FollowUp::kNone) follow_ups_.Do(task, call, looks_again);
-  if (sent_signal && run_.gates_only) AwaitSleepAtGates(call);
   if (!run_.turn.HasSpoken()) spawns_.TurnEnds(task, stop);
   task.process->timers.EndRests(stop.at);
   if (run_.turn.HasSpoken()) shared_events_.PassOn(task, stop);

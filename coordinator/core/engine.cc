@@ -141,6 +141,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   if (!ahead_.IsNextOn(cpu)) cpu.ComeTo(std::max(cpu.progress, run_.root.Least()));
   const Moment due{.at = cpu.progress, .from_outside = true};
   if (timers_.FireDue(robot, due.at)) PollEvents(kNoWait, due);
+  AwaitHandlers();
   launches_.StartDue(robot, cpu.progress);
   robot.scheduler.EndTurn(cpu.core);
   waker_.Refresh(robot);
@@ -399,6 +400,7 @@ bool Engine::Step() {
     WaitForDebugger();
     return true;
   }
+  AwaitHandlers();
   PollUnseen();
   LookAround();
   dds_.TakeOwnMessages();

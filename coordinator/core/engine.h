@@ -235,7 +235,12 @@ class Engine {
   void BringToGate(Task& task);
   Reactor::Found BringOthersToGates(const Task& sender, Moment moment);
   Reactor::Found AwaitSleepAtGates(Moment moment);
-  Reactor::Found AwaitThreads(Moment moment, HostDuration look_every,
+  void AwaitHandlers();
+  struct WayToGate {
+    HostDuration look_every;
+    HostDuration most;  // that it takes a thread, by its CPU clock
+  };
+  Reactor::Found AwaitThreads(Moment moment, const WayToGate& way,
                               const std::function<bool(const Task&)>& is_awaited,
                               const std::function<void(Task&)>& at_first);
   void ChargeUndispatched(Task& task);

@@ -6,6 +6,7 @@
 // ready becomes ready at that time, however late the coordinator looks.
 #include <signal.h>
 
+#include <optional>
 #include <utility>
 
 #include "coordinator/core/engine.h"
@@ -19,6 +20,9 @@ namespace {
 // The processor time that a thread has to handle the signal, and the real time: on a busy host
 // others may go first for many slices.
 constexpr HostDuration kMostWayToGate = HostDuration::Microseconds(100);
+// The same where a handler begins that ends a wait: it may be the first one since a fork, and what
+// it touches on its way be copied page by page, or be in nobody's cache any more.
+constexpr HostDuration kMostWayFromWait = HostDuration::Milliseconds(1);
 constexpr HostDuration kMostStarved = HostDuration::Seconds(5);
 constexpr HostDuration kGateLook = HostDuration::Microseconds(500);
 constexpr HostDuration kShortGateLook = HostDuration::Microseconds(50);  // at one who is there soon
@@ -133,10 +137,11 @@ Reactor::Found Engine::BringOthersToGates(const Task& sender, Moment moment) {
   const auto computes = [&sender](const Task& task) {
     return &task != &sender && MayCompute(task) && ThreadState(task.tid) == 'R';
   };
-  Reactor::Found found = AwaitThreads(moment, kGateLook, computes, [](Task& task) {
-    task.has_signal = true;
-    HostCpu::SendToGate(task.process->pid, task);
-  });
+  Reactor::Found found =
+      AwaitThreads(moment, {kGateLook, kMostWayToGate}, computes, [](Task& task) {
+        task.has_signal = true;
+        HostCpu::SendToGate(task.process->pid, task);
+      });
   found |= AwaitSleepAtGates(moment);
   for (int turn = 0; turn < kMostAtOnce && reactor_.HasMore(); ++turn) {
     found |= TakeEvents(kNoWait, moment, true);
@@ -148,12 +153,23 @@ Reactor::Found Engine::BringOthersToGates(const Task& sender, Moment moment) {
 // asleep, may run the handler at once: then no signal is there for it any more, and only the thread
 // itself can tell that its wait is over. The world must not go on past that.
 Reactor::Found Engine::AwaitSleepAtGates(Moment moment) {
-  return AwaitThreads(moment, kShortGateLook, IsAwakeAtGate, [](Task&) {});
+  return AwaitThreads(moment, {kShortGateLook, kMostWayFromWait}, IsAwakeAtGate, [](Task&) {});
 }
 
-// Each for no longer than its way to the gate takes, by its CPU clock; all of that happens at the
-// moment. `at_first` is done with each once.
-Reactor::Found Engine::AwaitThreads(Moment moment, HostDuration look_every,
+// A thread that was looked at for a signal, and had none, may be running the handler already.
+// Whoever has sent the signal (a program by the shim or past it, the kernel because a child has
+// ended), nobody has a turn before that is known, which might be one long sleep by its own clock
+// alone, and no time is jumped over. Who has told it sleeps, and has yet to be heard.
+void Engine::AwaitHandlers() {
+  while (const std::optional<Moment> look = signal_wakes_.TakeLook()) {
+    if (!run_.gates_only) return;
+    AwaitSleepAtGates(*look);
+    PollEvents(kNoWait, *look);
+  }
+}
+
+// All of that happens at the moment. `at_first` is done with each once.
+Reactor::Found Engine::AwaitThreads(Moment moment, const WayToGate& way,
                                     const std::function<bool(const Task&)>& is_awaited,
                                     const std::function<void(Task&)>& at_first) {
   Reactor::Found found;
@@ -167,9 +183,9 @@ Reactor::Found Engine::AwaitThreads(Moment moment, HostDuration look_every,
       const HostDuration now = HostNs(HostClockOf(task));
       const auto [first, is_new] = first_seen.try_emplace(&task, now);
       if (is_new) at_first(task);
-      awaits |= now <= first->second + kMostWayToGate;
+      awaits |= now <= first->second + way.most;
     }
-    if (awaits) found |= TakeEvents(look_every, moment, true);
+    if (awaits) found |= TakeEvents(way.look_every, moment, true);
   }
   return found;
 }
