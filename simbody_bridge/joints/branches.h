@@ -8,9 +8,9 @@
 
 namespace tcs {
 
-// Makes of `x` what `system` times it was. The system is symmetric and positive definite; of it the
-// upper right half is read and overwritten. Joints come behind those that carry them, for the sake
-// of time: any order gives the solution.
+// Solves `system` y = `x`, and writes y into `x`. The system is symmetric and positive definite;
+// its upper triangle is read and overwritten. It is quick where joints come behind those that carry
+// them: any order gives the solution.
 void SolveByBranches(Eigen::MatrixXd* system, Eigen::VectorXd* x);
 
 }  // namespace tcs

@@ -287,24 +287,26 @@ double JointPart::SpeedAfter(Index column, double seconds, double* rate) {
   return motion.speed[leader];
 }
 
-// What slides comes to rest before `until_s`, perhaps at once: by Newton's method, and where that
-// leads out of what is known, by halves, at first of the decades.
+// What slides comes to rest before `until_s`: by Newton's method, and where that leads out of what
+// is known, by halves, at first of the logarithm. Of a joint that begins at rest and goes the other
+// way at once, that is at once; it takes a part of the step then.
 double JointPart::Crossing(Index column, double until_s) {
-  constexpr int kTries = 60;
+  constexpr int kMostRounds = 60;
   const double sign = SignOf(column);
   const Index leader = leaders_[static_cast<std::size_t>(column)];
   const double start = sign * motion_.start().speed[leader];
   double low = 0, high = until_s;
   double next = start > 0 ? -start / (sign * motion_.start().rate[leader]) : 0;
-  for (int i = 0; i < kTries && high - low > kInstantS / 4; ++i) {
+  bool has_slid = start > 0;
+  for (int round = 0; round < kMostRounds && high - low > kInstantS / 4; ++round) {
     if (!(next > low && next < high)) {
       const double least = std::max(low, kInstantS / 10);
       next = high > 10 * least ? std::sqrt(least * high) : (low + high) / 2;
     }
     double rate = 0;
     const double at = sign * SpeedAfter(column, next, &rate);
-    const bool has_slid = start > 0 || low > 0;
     if (has_slid && std::abs(at) < kRestRadps) return next;
+    has_slid = has_slid || at > kRestRadps;
     (at > 0 ? low : high) = next;
     const double change = -at / (sign * rate);
     next += change;

@@ -56,7 +56,7 @@ class ServoMotion {
   const JointMotion& Arrive(const Eigen::VectorXd& end_rate);
   // How far off that may be.
   const JointMotion& error() const { return error_; }
-  // Where it leads if nothing but springs and dampers changes what pushes.
+  // Where it leads if nothing but springs and dampers changes what pushes: known after Middle.
   const JointMotion& ahead() const { return ahead_; }
   // Those of the last try.
   const JointMotion& middle() const { return at_middle_; }

@@ -20,6 +20,8 @@ namespace tcs {
 template <int kSize>
 class SpringResponse {
  public:
+  static_assert(kSize == Eigen::Dynamic || kSize % 2 == 0);
+
   SpringResponse(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& damping, double seconds)
       : used_(stiffness.rows()), size_(kSize == Eigen::Dynamic ? used_ : kSize) {
     minus_stiffness_.setZero(size_, size_);
@@ -107,7 +109,8 @@ class SpringResponse {
   // block of phi_k(z) is B_{k-1}. The unit of time becomes twice as long, which makes half of each
   // B_k.
   void Double() {
-    // Of the exponential, the upper left block, as phi_0(z) = 1 + z phi_1(z), and the lower right.
+    // The upper left block of the exponential, as phi_0(z) = 1 + z phi_1(z), and the lower right
+    // one.
     Matrix &upper = memory_[0], &lower = memory_[1];
     upper.setIdentity(size_, size_);
     AddProduct(b_[1], minus_stiffness_, &upper);

@@ -35,18 +35,16 @@ bool StepLength::Judge(double error, double accuracy, IslandStep* step) {
   const double promised_s = kSafety * h * std::cbrt(accuracy / error);  // infinite without error
   if (error <= accuracy) {
     step->length_s = h;
-    if (!is_limited_) {
-      step->next_try_s = std::clamp(promised_s, h, kMostGrowth * h);
-      return true;
-    }
-    // What a limit did not let it try it has no reason to give up, nor to hope for more: much
-    // shorter than that it says nothing of it.
-    const bool is_telling = kMostGrowth * h >= step->try_s;
-    step->next_try_s =
-        is_telling ? std::clamp(promised_s, h, std::max(h, step->try_s)) : step->try_s;
+    // What a limit did not let it try it has no reason to give up, nor to hope for more.
+    const bool is_limited = is_limited_ || is_cut_;
+    const double most_s = is_limited ? std::min(step->try_s, failed_s_) : kMostGrowth * h;
+    // What ends early at a kink says nothing of steps that are much longer.
+    const bool is_telling = !is_cut_ || kMostGrowth * h >= most_s;
+    step->next_try_s = is_telling ? std::clamp(promised_s, h, std::max(h, most_s)) : most_s;
     return true;
   }
-  is_limited_ = false;
+  is_limited_ = is_cut_ = false;
+  failed_s_ = h;
   seconds_ = std::isfinite(error) ? std::clamp(promised_s, kMostShrinking * h, kLeastShrinking * h)
                                   : kMostShrinking * h;
   if (seconds_ < kShortestStepS) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "simbody_bridge/island_engine.h"
@@ -78,10 +79,10 @@ class StepLength {
   // To try.
   double seconds() const { return seconds_; }
   void Set(double seconds) { seconds_ = seconds; }
-  // Shorter than error control has it, for the sake of what happens then.
-  void Limit(double seconds) {
+  // Shorter than error control has it, because of what happens then.
+  void Cut(double seconds) {
     seconds_ = seconds;
-    is_limited_ = true;
+    is_cut_ = true;
   }
 
   // Whether a try with this error is good enough: then the step is as long, and knows how long to
@@ -91,7 +92,9 @@ class StepLength {
 
  private:
   bool is_limited_ = false;  // shorter than error control has it
+  bool is_cut_ = false;      // by Cut
   double seconds_ = 0;
+  double failed_s_ = std::numeric_limits<double>::infinity();  // the last try that failed
 };
 
 }  // namespace tcs

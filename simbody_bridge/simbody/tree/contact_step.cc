@@ -8,8 +8,8 @@
 #include "simbody_bridge/joints/dry_friction.h"
 #include "simbody_bridge/joints/joint_groups.h"
 #include "simbody_bridge/simbody/tree/mimics.h"
-#include "simbody_bridge/simbody/tree/whole_nanoseconds.h"
 #include "simbody_bridge/simbody/vectors.h"
+#include "simbody_bridge/whole_nanoseconds.h"
 
 namespace tcs {
 namespace {

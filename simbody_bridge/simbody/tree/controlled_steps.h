@@ -8,7 +8,7 @@
 #include "simbody_bridge/model_loads.h"
 #include "simbody_bridge/simbody/kutta.h"
 #include "simbody_bridge/simbody/tree/tree.h"
-#include "simbody_bridge/simbody/tree/whole_nanoseconds.h"
+#include "simbody_bridge/whole_nanoseconds.h"
 
 namespace tcs {
 
@@ -17,13 +17,12 @@ namespace tcs {
 //   Try(tree, loads, step, seconds): a step of that length
 //   ErrorOf(tree, step, seconds): how far that may be off (GreatestError)
 //   EndAtEvent(tree, loads, step): of one that is good enough, to end it earlier
-//   PredictKink(tree, loads, step, seconds): when what acts has its first kink, as far as that can
-//   be
-//     told before a step of that length is tried; else its length
-//   MissedKink(tree, loads, step, seconds): of one that is good enough and was to end behind that
-//     kink, when it comes, if that is later; else its length
-//   FirstKink(tree, loads, step, seconds): of one that is not good enough, when the first kink was;
-//     else its length
+//   PredictKink(tree, loads, step, seconds): before any try, when what acts has its first kink, as
+//     far as that can be told; else that length
+//   LateKink(tree, loads, step, seconds): of a good try that was to end behind that kink and does
+//     not, when it comes; else its length
+//   FirstKink(tree, loads, step, seconds): of a try that is not good enough, when its first kink
+//     was; else its length
 template <class Method>
 class ControlledSteps {
  public:
@@ -37,17 +36,9 @@ class ControlledSteps {
     if (length.seconds() != step.limit.seconds()) length.Set(WholeNanoseconds(length.seconds()));
     const double most_s = length.seconds();
     const double kink_s = method().PredictKink(tree, loads, step, most_s);
-    if (kink_s < most_s) length.Limit(kink_s);
+    if (kink_s < most_s) length.Cut(kink_s);
     TryUntilGoodEnough(tree, loads, step, accuracy, &length);
-    if (kink_s < most_s) {
-      // Else small steps would come ever nearer to it.
-      const double reached_s = step.length_s;
-      const double missed_s = method().MissedKink(tree, loads, step, reached_s);
-      if (missed_s > reached_s && missed_s < std::min(2 * reached_s, most_s)) {
-        length.Limit(missed_s);
-        TryUntilGoodEnough(tree, loads, step, accuracy, &length);
-      }
-    }
+    if (kink_s < most_s) GoOnToKink(tree, loads, step, accuracy, most_s, &length);
     method().EndAtEvent(tree, loads, step);
     tree.Project(step.to);
     step.to_rate.resize(step.to.size());
@@ -69,6 +60,9 @@ class ControlledSteps {
   std::size_t worst_body_ = 0;
 
  private:
+  // A step as brief as this is not tried once more to make it longer.
+  static constexpr double kBriefS = 1e-8;
+
   Method& method() { return static_cast<Method&>(*this); }
 
   void TryUntilGoodEnough(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
@@ -79,9 +73,20 @@ class ControlledSteps {
       if (length->Judge(method().ErrorOf(tree, step, seconds), accuracy, &step)) return;
       // A try that has gone astray has kinks anywhere: error control goes as far by itself.
       const double kink_s = method().FirstKink(tree, loads, step, seconds);
-      if (kink_s > length->seconds() && kink_s < seconds) length->Limit(kink_s);
+      if (kink_s > length->seconds() && kink_s < seconds) length->Cut(kink_s);
       length->Set(WholeNanoseconds(length->seconds()));
     }
+  }
+
+  // Where the kink comes later than was predicted, the step is tried once more: else small steps
+  // would come ever nearer to it.
+  void GoOnToKink(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
+                  double most_s, StepLength* length) {
+    const double reached_s = step.length_s;
+    const double late_s = method().LateKink(tree, loads, step, reached_s);
+    if (late_s <= reached_s || late_s >= most_s || reached_s < kBriefS) return;
+    length->Cut(late_s);
+    TryUntilGoodEnough(tree, loads, step, accuracy, length);
   }
 };
 

@@ -20,6 +20,21 @@ constexpr std::size_t kMostSpeeds = 10;
 bool IsSprung(const JointDrive& drive) { return drive.stiffness > 0; }
 bool Holds(const JointDrive& drive) { return IsSprung(drive) || drive.damping > 0; }
 
+// Of each joint, 0 where it has no drive.
+void FindEffortRatios(const SimbodyTree& tree, std::span<const Wrench> acting,
+                      std::span<const double> state, std::vector<double>* ratios) {
+  const Forest& forest = tree.forest();
+  ratios->assign(forest.joints.size(), 0);
+  for (std::size_t i = 0; i < forest.joints.size(); ++i) {
+    const ForestJoint& joint = forest.joints[i];
+    if (joint.body == kWorldBody) continue;
+    const StateSlots& of = tree.slots()[static_cast<std::size_t>(joint.body)];
+    if (of.u_count != 1) continue;
+    const JointDrive drive = DriveOfJoint(acting, forest.links.size(), i);
+    (*ratios)[i] = EffortOf(drive, kNoLimit, state[of.q], state[of.u]) / joint.joint->limits.effort;
+  }
+}
+
 template <class Numbers>
 void Append(const Numbers& numbers, std::vector<double>* to) {
   to->insert(to->end(), numbers.data(), numbers.data() + numbers.size());
@@ -214,47 +229,31 @@ double JointSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doub
 }
 
 // As all goes on if nothing but springs and dampers changes what pushes the joints: that takes none
-// of the engine's rates, and is as good as a short step needs.
+// of the engine's rates.
 double JointSteps::PredictKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step,
                                double h) {
-  constexpr int kTries = 16;
-  constexpr double kFar = 10;
-  double before_s = 0, behind_s = 0;  // it is between these
-  kinks_.Begin(tree, loads.At(step, 0), step.from);
-  for (int i = 0; i < kTries; ++i) {
+  FindEffortRatios(tree, loads.At(step, 0), step.from, &ratios_);
+  crossings_.Begin(ratios_);
+  return crossings_.Predict(h, [&](double after_s, std::vector<double>* ratios) {
     for (JointPart& part : parts_) {
-      part.Middle(h);
+      part.Middle(after_s);
       part.Scatter(part.motion().ahead(), way_.data(), speed_.data());
     }
     Place(tree, step, state_);
-    const double kink_s = kinks_.First(tree, loads.At(step, h), state_, h);
-    double next_s = AfterKink(kink_s);
-    if (kink_s < h) {
-      if (next_s >= h) break;
-      behind_s = h;
-      // A straight line from afar: what a servo is asked for may have grown with the time squared.
-      if ((i == 0 && next_s < h / kFar) || next_s <= before_s) {
-        next_s = std::sqrt(std::max(next_s, before_s) * h);
-      }
-    } else {
-      if (h >= behind_s / 2) break;
-      before_s = h;
-      next_s = std::sqrt(before_s * behind_s);
-    }
-    h = WholeNanoseconds(next_s);
-  }
-  return h;
+    FindEffortRatios(tree, loads.At(step, after_s), state_, ratios);
+  });
 }
 
-double JointSteps::MissedKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step,
-                              double h) {
-  const double kink_s = kinks_.Missed(tree, loads.At(step, h), step.to, h);
-  return kink_s > h ? AfterKink(kink_s) : h;
+double JointSteps::LateKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step,
+                            double h) {
+  FindEffortRatios(tree, loads.At(step, h), step.to, &ratios_);
+  return crossings_.Late(h, ratios_);
 }
 
 double JointSteps::FirstKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step,
                              double h) {
-  return AfterKink(kinks_.First(tree, loads.At(step, h), step.to, h));
+  FindEffortRatios(tree, loads.At(step, h), step.to, &ratios_);
+  return crossings_.First(h, ratios_);
 }
 
 // How each part began, its springs and dampers, and its push. Then how far all that leads off from

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "simbody_bridge/joints/joint_part.h"
+#include "simbody_bridge/joints/limit_crossings.h"
 #include "simbody_bridge/simbody/tree/controlled_steps.h"
-#include "simbody_bridge/simbody/tree/servo_kinks.h"
 
 namespace tcs {
 
@@ -45,7 +45,7 @@ class JointSteps : public ControlledSteps<JointSteps> {
   void Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h);
   void EndAtEvent(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
   double PredictKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step, double h);
-  double MissedKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step, double h);
+  double LateKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step, double h);
   double FirstKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step, double h);
   void Place(const SimbodyTree& tree, const IslandStep& step, std::span<double> state);
   double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double h);
@@ -60,7 +60,8 @@ class JointSteps : public ControlledSteps<JointSteps> {
   std::vector<double> state_, middle_rate_, end_rate_, error_;
   std::vector<double> way_, speed_;                    // of all
   std::vector<double> turn_, middle_turn_, end_turn_;  // how coordinates grow
-  ServoKinks kinks_;
+  LimitCrossings crossings_;
+  std::vector<double> ratios_;
   IslandStep piece_;
   ServoStart start_;
   ServoPush push_;

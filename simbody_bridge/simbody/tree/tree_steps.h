@@ -18,8 +18,8 @@ class TreeSteps : public ControlledSteps<TreeSteps> {
                      double length_s) {
     return length_s;
   }
-  double MissedKink(const SimbodyTree& /*tree*/, ModelLoads& /*loads*/, const IslandStep& /*step*/,
-                    double length_s) {
+  double LateKink(const SimbodyTree& /*tree*/, ModelLoads& /*loads*/, const IslandStep& /*step*/,
+                  double length_s) {
     return length_s;
   }
   double FirstKink(const SimbodyTree& /*tree*/, ModelLoads& /*loads*/, const IslandStep& /*step*/,

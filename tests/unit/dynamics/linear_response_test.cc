@@ -6,6 +6,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "simbody_bridge/joints/spring_response.h"
+
 namespace tcs {
 namespace {
 
@@ -101,24 +103,32 @@ TEST(LinearResponse, OfCoupledJointsIsThatOfManySmallSteps) {
   EXPECT_LT((response.Speed(f0, f1, f2) - v).norm(), 1e-11 * v.norm());
 }
 
-// Sizes have code of their own.
-TEST(LinearResponse, OfAnyNumberOfJointsIsThatOfEachWhereNothingCouplesThem) {
-  for (int size = 1; size <= 13; ++size) {
-    VectorXd springs(size), dampers(size), f0(size), f1(size), f2(size);
-    for (int i = 0; i < size; ++i) {
-      springs[i] = 100 * i * i;
-      dampers[i] = 30 - 2 * i;
-      f0[i] = 1 + i, f1[i] = 2 - i, f2[i] = 0.5 * i;
-    }
-    LinearResponse whole, half;
-    FindResponse(springs.asDiagonal(), dampers.asDiagonal(), 0.1, &whole, &half);
-    for (int i = 0; i < size; ++i) {
-      for (const LinearResponse& of_all : {whole, half}) {
-        const LinearResponse alone = Respond(One(springs[i]), One(dampers[i]), of_all.seconds);
-        EXPECT_NEAR(of_all.Way(f0, f1, f2)[i], alone.Way(One(f0[i]), One(f1[i]), One(f2[i]))[0],
-                    1e-13);
-        EXPECT_NEAR(of_all.Speed(f0, f1, f2)[i], alone.Speed(One(f0[i]), One(f1[i]), One(f2[i]))[0],
-                    1e-12);
+// By the mass of a chain whose links are lighter the further out they are.
+Coupled MakeChain(int size) {
+  MatrixXd lower = MatrixXd::Identity(size, size);
+  VectorXd springs(size), dampers(size);
+  for (int i = 0; i < size; ++i) {
+    for (int k = 0; k < i; ++k) lower(i, k) = 0.3 + 0.1 * ((3 * i + 5 * k) % 7);
+    lower.row(i) /= 1 + i;
+    springs[i] = 100 * (i % 3);
+    dampers[i] = 0.4 * (i % 4);
+  }
+  const MatrixXd by_mass = (lower.transpose() * lower).inverse();
+  return {by_mass * springs.asDiagonal(), by_mass * dampers.asDiagonal()};
+}
+
+// Sizes have code of their own: it finds what that for any size does.
+TEST(LinearResponse, OfAnyNumberOfJointsIsFoundInTheSameWay) {
+  for (int size = 1; size <= 12; ++size) {
+    const auto [stiffness, damping] = MakeChain(size);
+    for (const double seconds : {1e-5, 1e-2, 0.3}) {
+      LinearResponse whole, half, expected, expected_half;
+      FindResponse(stiffness, damping, seconds, &whole, &half);
+      SpringResponse<Eigen::Dynamic>(stiffness, damping, seconds).Find(&expected, &expected_half);
+      for (std::size_t k = 0; k < 4; ++k) {
+        ASSERT_EQ(whole.b[k].rows(), size);
+        EXPECT_LT((whole.b[k] - expected.b[k]).norm(), 1e-10 * expected.b[k].norm()) << size;
+        EXPECT_LT((half.b[k] - expected_half.b[k]).norm(), 1e-10 * expected_half.b[k].norm());
       }
     }
   }

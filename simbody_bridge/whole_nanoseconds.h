@@ -13,7 +13,4 @@ inline double WholeNanoseconds(double seconds) {
   return ns > 0 ? VirtualDuration::Nanoseconds(ns).seconds() : seconds;
 }
 
-// Where a step ends that is to end behind what happens after `seconds`.
-inline double AfterKink(double seconds) { return WholeNanoseconds(seconds + 1e-9); }
-
 }  // namespace tcs

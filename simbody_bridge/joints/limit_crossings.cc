@@ -1,0 +1,143 @@
+#include "simbody_bridge/joints/limit_crossings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simbody_bridge/whole_nanoseconds.h"
+
+namespace tcs {
+namespace {
+
+// How far behind a limit the next step begins.
+constexpr double kBehind = 1e-5;
+// As near to it a step may end where it was to end behind it.
+constexpr double kNear = 1e-4;
+constexpr double kNanosecond = 1e-9;
+constexpr double kNoCrossing = std::numeric_limits<double>::infinity();
+
+// The first whole nanosecond behind.
+double After(double seconds) { return WholeNanoseconds(seconds + kNanosecond); }
+
+// Whether a ratio has crossed a limit, from `start` to `end`, both less the limit.
+bool Crosses(double start, double end) {
+  return std::isfinite(end) && start != 0 && (start > 0) != (end > 0);
+}
+
+// Where the straight line through two points comes to `ratio`.
+double OnLine(double at, double value, double slope, double ratio) {
+  return at + (ratio - value) / slope;
+}
+
+}  // namespace
+
+void LimitCrossings::Begin(const std::vector<double>& ratios) {
+  start_ = {0, ratios};
+  slopes_.assign(ratios.size(), 0);
+  limit_ = 0;
+  tried_.h = 0;
+}
+
+// The first one of those between `before` and `behind`: by the line through the last two points
+// where that leads between these, else by that through themselves. Never if there is none.
+double LimitCrossings::Estimate(const Point& before, const Point& behind, const Point* last,
+                                const Point* latest) {
+  double first_s = kNoCrossing;
+  for (std::size_t i = 0; i < start_.ratios.size(); ++i) {
+    for (const double limit : {-1.0, 1.0}) {
+      const double start = start_.ratios[i] - limit, end = behind.ratios[i] - limit;
+      if (!Crosses(start, end)) continue;
+      const double to = limit + (end > 0 ? kBehind : -kBehind);
+      const auto along = [&](const Point& one, const Point& other) {
+        return OnLine(other.h, other.ratios[i],
+                      (other.ratios[i] - one.ratios[i]) / (other.h - one.h), to);
+      };
+      double at_s = last != nullptr ? along(*last, *latest) : kNoCrossing;
+      if (!(at_s > before.h && at_s < behind.h)) at_s = along(before, behind);
+      if (!(at_s < first_s)) continue;
+      first_s = at_s;
+      joint_ = i;
+      limit_ = limit;
+    }
+  }
+  return first_s;
+}
+
+// By the secant method, and by halves where that makes little of it: from afar by halves of the
+// logarithm, as a ratio may have grown with any power of the time.
+double LimitCrossings::Predict(double h, const FindRatios& find) {
+  constexpr int kMostRounds = 40;
+  constexpr int kPatience = 2;  // rounds in which the bracket does not become half as long
+  constexpr double kFar = 10;
+  Point before = start_, behind{h, {}}, last, latest;
+  find(h, &behind.ratios);
+  const Point *of_last = nullptr, *of_latest = nullptr;
+  int rounds_without = 0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double at_s = Estimate(before, behind, of_last, of_latest);
+    if (at_s == kNoCrossing) break;
+    double next_s = After(at_s);
+    const double length_s = behind.h - before.h;
+    if (length_s < 1.5 * kNanosecond) break;
+    if (next_s >= behind.h) {
+      if (std::abs(behind.ratios[joint_] - limit_) < kNear) break;
+      rounds_without = kPatience;  // a line that is steep from afar
+    }
+    const bool is_from_afar = round == 0 && kFar * next_s < h;
+    if (is_from_afar || rounds_without >= kPatience || next_s <= before.h) {
+      const double least_s = std::max({before.h, kNanosecond, is_from_afar ? next_s : 0});
+      next_s = WholeNanoseconds(kFar * least_s < behind.h ? std::sqrt(least_s * behind.h)
+                                                          : (before.h + behind.h) / 2);
+      if (next_s <= before.h || next_s >= behind.h) break;
+      rounds_without = 0;
+    }
+    last = of_latest == nullptr ? behind : latest;
+    latest.h = next_s;
+    find(next_s, &latest.ratios);
+    of_last = &last;
+    of_latest = &latest;
+    bool has_crossed = false;
+    for (std::size_t i = 0; i < start_.ratios.size() && !has_crossed; ++i) {
+      for (const double limit : {-1.0, 1.0}) {
+        has_crossed = has_crossed || Crosses(start_.ratios[i] - limit, latest.ratios[i] - limit);
+      }
+    }
+    (has_crossed ? behind : before) = latest;
+    rounds_without = behind.h - before.h > length_s / 2 ? rounds_without + 1 : 0;
+  }
+  if (behind.h == h) limit_ = 0;
+  for (std::size_t i = 0; limit_ != 0 && i < slopes_.size(); ++i) {
+    slopes_[i] = (behind.ratios[i] - before.ratios[i]) / (behind.h - before.h);
+  }
+  return behind.h;
+}
+
+double LimitCrossings::Late(double h, const std::vector<double>& ratios) const {
+  if (limit_ == 0) return h;
+  const double start = start_.ratios[joint_] - limit_, end = ratios[joint_] - limit_;
+  if (Crosses(start, end)) return h;
+  const double to = limit_ + (start > 0 ? -kBehind : kBehind);
+  const double at_s = OnLine(h, ratios[joint_], slopes_[joint_], to);
+  return at_s > h && at_s < 2 * h ? After(at_s) : h;
+}
+
+double LimitCrossings::First(double h, const std::vector<double>& ratios) {
+  double first_s = h;
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    if (tried_.h > h) slopes_[i] = (tried_.ratios[i] - ratios[i]) / (tried_.h - h);
+    for (const double limit : {-1.0, 1.0}) {
+      const double start = start_.ratios[i] - limit, end = ratios[i] - limit;
+      // What ends as little behind as it is to end is not what makes a step fail.
+      if (!Crosses(start, end) || std::abs(end) < 2 * kBehind) continue;
+      const double to = limit + (end > 0 ? kBehind : -kBehind);
+      double at_s = OnLine(h, ratios[i], (end - start) / h, to);
+      const double by_slope_s = OnLine(h, ratios[i], slopes_[i], to);
+      if (by_slope_s > 0 && by_slope_s < at_s) at_s = by_slope_s;
+      if (at_s < first_s) first_s = at_s;
+    }
+  }
+  tried_ = {h, ratios};
+  return std::min(h, After(first_s));
+}
+
+}  // namespace tcs
