@@ -9,7 +9,7 @@ namespace tcs::zoo {
 
 // How far the joints of the robot in the file `urdf`, read as `model`, are from where DART has them
 // after 1 s of smooth motion (free_motion.h); `packages` is the folder of the packages. None: DART
-// is not there, or cannot read the file.
+// is not there, cannot read the file, or finds another place with four times as many steps.
 std::optional<double> DifferenceToDart(const std::string& urdf, const std::string& packages,
                                        const RobotModel& model);
 

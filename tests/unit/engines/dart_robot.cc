@@ -26,6 +26,10 @@ dart::dynamics::SkeletonPtr Read(const std::string& urdf, const std::string& pac
   DartLoader::Options options;
   options.mDefaultRootJointType =
       has_fixed_base ? DartLoader::RootJointType::FIXED : DartLoader::RootJointType::FLOATING;
+  // By default DART makes 1 kg and 1 kg m^2 of a link of which the file says nothing.
+  constexpr double kNextToNone = 1e-12;
+  options.mDefaultInertia = {kNextToNone, Vector3d::Zero(),
+                             kNextToNone * Eigen::Matrix3d::Identity()};
   DartLoader loader(options);
   for (const auto& entry : std::filesystem::directory_iterator(packages)) {
     loader.addPackageDirectory(entry.path().filename().string(), entry.path().string());
