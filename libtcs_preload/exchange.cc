@@ -149,7 +149,8 @@ void Notify(const GuestThread& thread, const shm::ClockReading& reading) {
   shm::ThreadSlot& slot = *thread.slot;
   slot.stopped_tsc = reading.tsc;
   if (Saying runs = Saying::kRuns; slot.saying.compare_exchange_strong(runs, Saying::kSaid)) return;
-  const shm::PipeMessage message{thread.index};
+  const bool ends_wait = slot.note.kind == NotificationKind::kInterrupted;
+  const shm::PipeMessage message{thread.index, ends_wait ? 1u : 0u};
   for (;;) {
     const long n = RawSyscall(SYS_write, g_notify_fd, Arg(&message), sizeof message);
     if (n == static_cast<long>(sizeof message)) return;
@@ -242,7 +243,8 @@ Ended EndWait(GuestThread& thread) {
   AwaitTaken(slot);
   const shm::ClockReading reading = ReadForNote(slot, slot.clock);
   NoHandlers none(slot, nullptr);
-  // The handler may have begun before the thread's turn.
+  // The handler may have begun before the thread's turn. If that begins after this look, the
+  // coordinator makes nothing of what it is told.
   if (!ShutGate(slot)) return Ended::kByOther;
   const Charged charged =
       FillRecord(slot, Request{.kind = NotificationKind::kInterrupted}, reading);

@@ -52,8 +52,11 @@ static_assert(sizeof(AttachReply) == 128);
 // What a notification puts into the process's pipe: the index of the slot whose record is filled.
 struct PipeMessage {
   std::uint32_t slot;
+  // 1: the thread tells that a handler ends its wait (kInterrupted). Should its gate have been
+  // opened before this is read, the thread has gone on, and the record may be of anything by now.
+  std::uint32_t ends_wait;
 };
-static_assert(sizeof(PipeMessage) == 4);
+static_assert(sizeof(PipeMessage) == 8);
 
 // Where the kernel lets the coordinator copy no descriptors of clients (RunHeader::has_porters)
 // each process has a porter: a process beside it that shares its table of descriptors, and sends

@@ -149,7 +149,7 @@ void Engine::Resume(Task& task) {
   if (task.trap_id != 0) {
     AnswerCall(task);
   } else if (task.slot >= 0 && is_at_gate) {
-    HostCpu::OpenGate(SlotOf(task));
+    OpenGate(task);
   }
   // What it was sent before, it handles first of all.
   if (!run_.gates_only) task.has_signal = false;
@@ -325,7 +325,7 @@ void Engine::AwaitStop(Task& task) {
     // What it has made of its clock meanwhile must not be reckoned with.
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
     if (!first) host_cpu_.Continue(task);
-    if (std::exchange(opens_gate_, false)) HostCpu::OpenGate(SlotOf(task));
+    if (std::exchange(opens_gate_, false)) OpenGate(task);
     const HostDuration asked = task.is_brief ? BriefSleep(task, brief_looks++) : TimeToLook(task);
     if (PollWhileRunning(task, asked)) return;
     if (!run_.turn.timed_out) continue;

@@ -90,6 +90,7 @@
 #include "coordinator/tasks/run_clock.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
+#include "shm/attach_protocol.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -232,6 +233,8 @@ class Engine {
   using Late = std::function<Reactor::Found(Moment)>;
   bool PutOff(const Task* by, Late late);
   bool MayGoOn(Task& task);
+  void OpenGate(Task& task);
+  bool IsSaidBeforeTurn(Task& task, const shm::PipeMessage& message);
   void BringToGate(Task& task);
   Reactor::Found BringOthersToGates(const Task& sender, Moment moment);
   Reactor::Found AwaitSleepAtGates(Moment moment);

@@ -94,6 +94,7 @@ Reactor::Found Engine::TakeNotifications(const Process& process, Moment moment) 
   for (std::size_t i = 0; i < count; ++i) {
     Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
     if (task == nullptr || task->state == TaskState::kDead) continue;
+    if (IsSaidBeforeTurn(*task, messages[i])) continue;
     // One that says so again and again is heard once.
     if (!task->is_put_off && run_.gates_only) task->is_put_off = PutOffArrival(*task);
     if (!task->is_put_off) found |= NotificationArrived(*task, moment);
@@ -192,7 +193,7 @@ bool Engine::CutsOff(Task& task) {
   }
   shm::ThreadSlot& slot = SlotOf(task);
   slot.wake_reason.store(shm::WakeReason::kCutOff);
-  HostCpu::OpenGate(slot);
+  OpenGate(task);
   run_.turn.held_looks = 0;
   host_cpu_.detector().Arm();
   return true;

@@ -76,13 +76,23 @@ bool Engine::MayGoOn(Task& task) {
   if (run_.turn.is_sent_to_gate) return false;
   const shm::ThreadSlot& slot = SlotOf(task);
   HostCpu::FollowOrigin(task);
-  if (slot.note.kind == shm::NotificationKind::kCall) {
-    says_call_ = true;
-    return true;
-  }
-  // It said so before it was dispatched.
-  return slot.note.kind == shm::NotificationKind::kInterrupted &&
-         slot.gate.load() == shm::kGateOpen;
+  if (slot.note.kind != shm::NotificationKind::kCall) return false;
+  says_call_ = true;
+  return true;
+}
+
+void Engine::OpenGate(Task& task) {
+  task.is_let_go = run_.gates_only;
+  HostCpu::OpenGate(SlotOf(task));
+}
+
+// A thread may begin to say that a handler ends its wait, and be dispatched before it has said it.
+// It does not stop for that, and goes on to what it says next: what it has noted may be that, or
+// what the handler interrupted. The pipe keeps the order, so that the gate was open already if
+// nothing else has been said since that opened.
+bool Engine::IsSaidBeforeTurn(Task& task, const shm::PipeMessage& message) {
+  if (message.ends_wait == 0) task.is_let_go = false;
+  return task.is_let_go;
 }
 
 // All events of this instant have been handled. If nobody has to run instead, the running thread

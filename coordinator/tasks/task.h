@@ -144,9 +144,11 @@ struct Task : HostThread {
   bool in_vfork = false;        // it stands in the kernel until its child executes or ends
   // It has its place, but does not know of it: it has made no call yet that the shim sees.
   bool is_adopted = false;
-  std::uint64_t tls = 0;            // of one that was that at its birth; 0: unknown
-  bool can_be_stopped = true;       // it has the handler that brings a thread to its gate
-  bool executes = false;            // another program, perhaps: it has no handlers there
+  std::uint64_t tls = 0;       // of one that was that at its birth; 0: unknown
+  bool can_be_stopped = true;  // it has the handler that brings a thread to its gate
+  bool executes = false;       // another program, perhaps: it has no handlers there
+  // Its gate has been opened, and nothing that it has said since has been heard.
+  bool is_let_go = false;
   bool has_signal = false;          // ours, to go to its gate, unless it has handled it by now
   bool is_put_off = false;          // has notified, and is heard later (gates_only.cc),
   bool is_call_put_off = false;     // or its trapped call has been received, and is taken later

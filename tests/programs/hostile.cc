@@ -82,7 +82,7 @@ long Own(long number, long a = 0, long b = 0, long c = 0) {
 }
 
 void Notify(std::uint32_t slot) {
-  const PipeMessage message{slot};
+  const PipeMessage message{slot, 0};
   Own(SYS_write, NotifyFd(), reinterpret_cast<long>(&message), sizeof message);
 }
 

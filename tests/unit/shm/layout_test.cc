@@ -12,7 +12,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 29u);
+  EXPECT_EQ(kVersion, 30u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 5376u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
