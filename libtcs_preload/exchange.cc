@@ -348,6 +348,13 @@ void NoteHandler(GuestThread& thread) {
   thread.slot->gate.compare_exchange_strong(gate, shm::kGateClosed);
 }
 
+void AwaitTurnOfHandler(GuestThread& thread) {
+  if (g_header->gates_only == 0 || IsShutDown() || !IsAtGate(thread)) return;
+  ++thread.depth;
+  Interrupted(thread).PutBack(*thread.slot);
+  --thread.depth;
+}
+
 bool IsBeside(const GuestThread& thread) { return RunsBeside(*thread.slot); }
 
 bool IsAtGate(const GuestThread& thread) {

@@ -48,6 +48,11 @@ bool IsAtGate(const GuestThread& thread);
 // thread does not wait there as if nothing had come.
 void NoteHandler(GuestThread& thread);
 
+// Before the handler executes anything of the program's: where nothing but its gate keeps the
+// thread from running on, and it has no turn, it waits for one. The coordinator hears that the
+// handler ends a wait, however long that computes before its first call.
+void AwaitTurnOfHandler(GuestThread& thread);
+
 // The gate without a notification: the attach itself was one.
 void AwaitFirstDispatch(GuestThread& thread);
 

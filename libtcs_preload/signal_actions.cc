@@ -59,7 +59,8 @@ bool HasWaited() {
 // What the kernel runs for every handler of the program's.
 void OnSignal(int signal, siginfo_t* info, void* context) {
   const Wanted wanted = g_wanted[signal].load();
-  NoteHandler(OwnState());
+  GuestThread& thread = OwnState();
+  NoteHandler(thread);
   InterruptedCall call(*static_cast<ucontext_t*>(context));
   if (call.IsMadeAgain()) {
     const EndBySignal end = call.HowItEnds();
@@ -67,6 +68,7 @@ void OnSignal(int signal, siginfo_t* info, void* context) {
         end == EndBySignal::kAlways || (end == EndBySignal::kUnlessRestart && !wanted.restarts());
     if (may_fail && (!call.IsHandedOver() || HasWaited())) call.FailWithEintr();
   }
+  if (thread.depth > 0) AwaitTurnOfHandler(thread);
   wanted.handler()(signal, info, context);
 }
 
