@@ -62,6 +62,12 @@ done
 run=$!
 for _ in $(seq 300); do [[ -e $folder/listed ]] && break; sleep 0.1; done
 kill -9 "$(coordinator_of "$run")"
+ends_within_a_minute() {
+  for _ in $(seq 600); do kill -0 "$1" 2>/dev/null || return 0; sleep 0.1; done
+  return 1
+}
+ends_within_a_minute "$run" ||
+  fail "the run goes on without its coordinator: $(ps -eo pid,ppid,stat,psr,cls,etime,args | grep -E 'tcsim|bash -c ls')"
 wait "$run" 2>/dev/null || true
 [[ -e $folder/listed ]] || fail "the run did not begin"
 left=$(new_in_shm | grep tcs-computer) || true
