@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "simbody_bridge/whole_nanoseconds.h"
 
@@ -38,10 +39,19 @@ void LimitCrossings::Begin(const std::vector<double>& ratios) {
   tried_.h = 0;
 }
 
+bool LimitCrossings::HasCrossed(const std::vector<double>& ratios) const {
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    for (const double limit : {-1.0, 1.0}) {
+      if (Crosses(start_.ratios[i] - limit, ratios[i] - limit)) return true;
+    }
+  }
+  return false;
+}
+
 // The first one of those between `before` and `behind`: by the line through the last two points
 // where that leads between these, else by that through themselves. Never if there is none.
-double LimitCrossings::Estimate(const Point& before, const Point& behind, const Point* last,
-                                const Point* latest) {
+double LimitCrossings::Estimate(const Point& before, const Point& behind, const Point& last,
+                                const Point& latest) {
   double first_s = kNoCrossing;
   for (std::size_t i = 0; i < start_.ratios.size(); ++i) {
     for (const double limit : {-1.0, 1.0}) {
@@ -52,7 +62,7 @@ double LimitCrossings::Estimate(const Point& before, const Point& behind, const 
         return OnLine(other.h, other.ratios[i],
                       (other.ratios[i] - one.ratios[i]) / (other.h - one.h), to);
       };
-      double at_s = last != nullptr ? along(*last, *latest) : kNoCrossing;
+      double at_s = along(last, latest);
       if (!(at_s > before.h && at_s < behind.h)) at_s = along(before, behind);
       if (!(at_s < first_s)) continue;
       first_s = at_s;
@@ -69,12 +79,12 @@ double LimitCrossings::Predict(double h, const FindRatios& find) {
   constexpr int kMostRounds = 40;
   constexpr int kPatience = 2;  // rounds in which the bracket does not become half as long
   constexpr double kFar = 10;
-  Point before = start_, behind{h, {}}, last, latest;
+  Point before = start_, behind{h, {}};
   find(h, &behind.ratios);
-  const Point *of_last = nullptr, *of_latest = nullptr;
+  Point last = before, latest = behind;
   int rounds_without = 0;
   for (int round = 0; round < kMostRounds; ++round) {
-    const double at_s = Estimate(before, behind, of_last, of_latest);
+    const double at_s = Estimate(before, behind, last, latest);
     if (at_s == kNoCrossing) break;
     double next_s = After(at_s);
     const double length_s = behind.h - before.h;
@@ -91,18 +101,9 @@ double LimitCrossings::Predict(double h, const FindRatios& find) {
       if (next_s <= before.h || next_s >= behind.h) break;
       rounds_without = 0;
     }
-    last = of_latest == nullptr ? behind : latest;
-    latest.h = next_s;
+    last = std::exchange(latest, {next_s, {}});
     find(next_s, &latest.ratios);
-    of_last = &last;
-    of_latest = &latest;
-    bool has_crossed = false;
-    for (std::size_t i = 0; i < start_.ratios.size() && !has_crossed; ++i) {
-      for (const double limit : {-1.0, 1.0}) {
-        has_crossed = has_crossed || Crosses(start_.ratios[i] - limit, latest.ratios[i] - limit);
-      }
-    }
-    (has_crossed ? behind : before) = latest;
+    (HasCrossed(latest.ratios) ? behind : before) = latest;
     rounds_without = behind.h - before.h > length_s / 2 ? rounds_without + 1 : 0;
   }
   if (behind.h == h) limit_ = 0;

@@ -35,7 +35,8 @@ class LimitCrossings {
     std::vector<double> ratios;
   };
 
-  double Estimate(const Point& before, const Point& behind, const Point* last, const Point* latest);
+  bool HasCrossed(const std::vector<double>& ratios) const;
+  double Estimate(const Point& before, const Point& behind, const Point& last, const Point& latest);
 
   Point start_;
   std::vector<double> slopes_;  // 1/s, where a crossing was found; 0: not known
