@@ -19,12 +19,21 @@ shared_at_start=$(ls /dev/shm)
 new_in_shm() {
   local now i
   now=$(comm -13 <(sort <<<"$shared_at_start") <(ls /dev/shm | sort))
-  for ((i = 0; i < 100; ++i)); do
+  for ((i = 0; i < 500; ++i)); do  # longer than a run of another test's goes on
     [[ -n $now ]] || return 0
     sleep 0.2
     now=$(comm -12 <(printf "%s\n" "$now") <(ls /dev/shm | sort))
   done
   printf "%s\n" "$now"
+}
+# Whether no process with these words in its command line is left, once those that were killed have had a processor to end.
+none_left() {  # WORDS
+  local i
+  for ((i = 0; i < 100; ++i)); do
+    pgrep -f "$1" >/dev/null || return 0
+    sleep 0.2
+  done
+  return 1
 }
 # The file of the first library of the loader's that matches; nothing where there is none. The whole list is read: who
 # stops reading ends `ldconfig` by SIGPIPE, and with it, under pipefail, the test.
