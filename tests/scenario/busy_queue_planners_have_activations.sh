@@ -96,6 +96,6 @@ for kind in ("blocking", "polling", "posix"):
     for row in got[1:-1]:
         assert int(row["release_ns"]) == int(row["start_ns"]) < int(row["end_ns"]), (kind, row)
 assert COUNT - 1 <= len(rows["waiting/c"]) <= COUNT + 1, len(rows["waiting/c"])
-# It may be there before all three of a period are.
-assert COUNT - 1 <= len(rows["draining/c"]) <= 2 * COUNT, len(rows["draining/c"])
+# It may be there before all three of a period are, and on a busy host find those of two periods.
+assert COUNT * 4 // 5 <= len(rows["draining/c"]) <= 2 * COUNT, len(rows["draining/c"])
 PY

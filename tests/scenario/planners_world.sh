@@ -9,7 +9,7 @@ fly_planners() {
       echo "  $kind: {clients: {c: {command: ${1//KIND/$kind}}}}"
     done
   } >"$out/scenario.yaml"
-  timeout 80 "$tcsim" run "$out/scenario.yaml" --out "$out/out" >"$out/said" 2>"$out/stderr" ||
+  timeout 200 "$tcsim" run "$out/scenario.yaml" --out "$out/out" >"$out/said" 2>"$out/stderr" ||
     fail "$(cat "$out/stderr")"
   for kind in "${kinds[@]}"; do
     grep -q done "$out/out/$kind-c.out.log" || fail "$kind: $(cat "$out/out/$kind-c".*.log)"
