@@ -59,7 +59,7 @@ chains:
 YAML
 }
 run() {  # NAME
-  timeout 60 "$tcsim" run "$1.yaml" --accounting "$2" --record mcap --out "$1" >"$1.said" 2>&1 || fail "$(cat "$1.said")"
+  timeout 200 "$tcsim" run "$1.yaml" --accounting "$2" --record mcap --out "$1" >"$1.said" 2>&1 || fail "$(cat "$1.said")"
 }
 scenario 0.02 250ms >well.yaml
 scenario 0.15 250ms >slow.yaml
@@ -70,9 +70,10 @@ for accounting in fixed measured; do
   grep -q '^camera->motor .* r/seer, r/pilot$' well.said || fail "no table: $(cat well.said)"
   grep -q '^! camera->motor: [0-9]* of [0-9]* commands acted on samples older than 250 ms, the first at [0-9.]* s; the oldest was [0-9.]* \(ms\|s\) old' slow.said ||
     fail "$(cat slow.said)"
-  python3 - <<'PY' || fail "$accounting: $(cat well.said)"
-import json
+  python3 - $accounting <<'PY' || fail "$accounting: $(cat well.said)"
+import json, sys
 MS = 1_000_000
+fixed = sys.argv[1] == "fixed"
 chains = json.load(open("well/summary.json"))["chains"]
 assert set(chains) == {"camera->motor", "eye_to_hand", "gyro->motor"}, set(chains)
 for name, chain in chains.items():
@@ -88,14 +89,19 @@ camera = chains["camera->motor"]
 assert camera == {**chains["eye_to_hand"], "deadline_ns": 250 * MS}, chains
 assert camera["through"] == ["r/seer", "r/pilot"] and camera["missed"] == 0, camera
 # Seen for 20 ms, of which the pilot has 2 or 3; then until the pilot's next reading; then held for 90 until the next image.
-hops = {(hop["of"], hop["name"]): hop["ns"] for hop in camera["worst"][0]["hops"]}
+# The worst is that, and under measured the median of the five worst: one may be so old because the host was busy.
+oldest = camera["worst"][: 1 if fixed else None]
+hops = {}
+for one in oldest:
+    for hop in one["hops"]: hops.setdefault((hop["of"], hop["name"]), []).append(hop["ns"])
+hops = {key: sorted(ns)[len(ns) // 2] for key, ns in hops.items()}
 assert hops["sensor", "camera"] == 7 * MS, hops
 assert 20 * MS <= hops["program", "r/seer"] <= 28 * MS, hops
 assert hops["waiting", "r/pilot"] <= 11 * MS, hops
 assert 0.97 * MS <= hops["program", "r/pilot"] <= 3 * MS, hops  # a measured millisecond is one by the thread's CPU clock
 assert 85 * MS <= hops["held", "r/pilot"] <= 115 * MS, hops  # or a reading longer
-# Its first command of each image is the reaction: all of that but for what is held.
-assert 30 * MS <= camera["reaction_ns"]["p50"] <= 45 * MS, camera["reaction_ns"]
+# Its first command of each image is the reaction: all of that but for what is held. It is one reading later on a slow host.
+assert 30 * MS <= camera["reaction_ns"]["p50"] <= (45 if fixed else 50) * MS, camera["reaction_ns"]
 assert 25 <= camera["reaction_ns"]["count"] <= 30, camera["reaction_ns"]
 slow = json.load(open("slow/summary.json"))
 assert slow["chains"]["camera->motor"]["missed"] > 50, slow["chains"]
