@@ -5,6 +5,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Topics: cores, threads.
 for cores in 4 2 1; do
   took=$("$tcsim" exec --cores "$cores" -- "$build/bin/computing_threads" 4 0.25)
-  awk -v t="$took" -v cores="$cores" 'BEGIN { exit !(t >= 1 / cores && t < 1 / cores + 0.0025) }' ||
+  # Measured charges are those of CPU clocks to 1 %, and starting threads takes a slow host some ms.
+  awk -v t="$took" -v cores="$cores" 'BEGIN { exit !(t >= 0.99 / cores && t < 1.01 / cores + 0.01) }' ||
     fail "a second of computing took $took s on $cores cores"
 done
