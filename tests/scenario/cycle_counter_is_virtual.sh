@@ -32,7 +32,7 @@ cc -O2 -o "$work/dynamic" "$work/teller.c"
 cc -O2 -static -o "$work/static" "$work/teller.c"
 for how in dynamic static; do
   for run in 1 2 3; do
-    timeout 60 "$tcsim" exec --accounting fixed -- sh -c "$work/$how" >"$work/$how.$run" || fail "$how ends with $?"
+    timeout 200 "$tcsim" exec --accounting fixed -- sh -c "$work/$how" >"$work/$how.$run" || fail "$how ends with $?"
     cmp "$work/$how.1" "$work/$how.$run" || fail "fixed runs of the $how program differ"
   done
   # 1 GHz, and a spin of 20 ms after an hour's sleep.
@@ -41,10 +41,10 @@ for how in dynamic static; do
     "$work/$how.1" || fail "the $how program: $(cat "$work/$how.1")"
 done
 # Measured it has the host's rate, whatever that is.
-said=$(timeout 60 "$tcsim" exec -- "$work/dynamic" | tail -1)
+said=$(timeout 200 "$tcsim" exec -- "$work/dynamic" | tail -1)
 awk '!($1 >= 3600e9 * ($2 - 0.01) && $1 < 3600e9 * ($2 + 0.01) && $2 > 0.5 && $2 < 8) { exit 1 }' <<<"$said" || fail "measured: $said"
 # The host's has gone on by less than the hour.
-said=$(timeout 60 "$tcsim" exec --rdtsc host -- "$work/dynamic" 2>&1 | without_waits | tail -1)
+said=$(timeout 200 "$tcsim" exec --rdtsc host -- "$work/dynamic" 2>&1 | without_waits | tail -1)
 awk '!($1 < 60e9 && $2 < 0.1) { exit 1 }' <<<"$said" || fail "the host's: $said"
 
 # Calls on both sides of the read, and no room between the functions.
@@ -59,10 +59,10 @@ unsigned ReadBetweenCalls(void);
 int main(void) { printf("%d\n", ReadBetweenCalls() == ReadBetweenCalls()); }
 C
 cc -O1 -o "$work/closed" "$work/closed.c"
-said=$(timeout 60 "$tcsim" exec -- sh -c "$work/closed; $work/closed" 2>&1 | without_waits)
+said=$(timeout 200 "$tcsim" exec -- sh -c "$work/closed; $work/closed" 2>&1 | without_waits)
 [[ $said == "tcsim: "*"sh reads the processor's cycle counter (rdtsc) in $work/closed (at 0x"*"), where tcs cannot replace the instruction"*$'\n0\n0' ]] ||
   fail "what cannot be replaced: $said"
-said=$(timeout 60 "$tcsim" exec --rdtsc host -- sh -c "$work/closed" 2>&1 | without_waits)
+said=$(timeout 200 "$tcsim" exec --rdtsc host -- sh -c "$work/closed" 2>&1 | without_waits)
 [[ $said == 0 ]] || fail "the host's counter is warned of: $said"
 
 # Code that is made as the program runs; the first piece does not read the counter.
@@ -83,9 +83,9 @@ int main(void) {
 }
 C
 cc -O1 -o "$work/maker" "$work/maker.c"
-said=$(timeout 60 "$tcsim" exec -- "$work/maker" 2>&1 | without_waits)
+said=$(timeout 200 "$tcsim" exec -- "$work/maker" 2>&1 | without_waits)
 [[ $said == "12559"*"maker reads the processor's cycle counter (rdtsc) in code that it makes as it runs, where"*$'\n1' ]] || fail "code that is made: $said"
-said=$(timeout 60 "$tcsim" exec --rdtsc host -- "$work/maker" 2>&1 | without_waits)
+said=$(timeout 200 "$tcsim" exec --rdtsc host -- "$work/maker" 2>&1 | without_waits)
 [[ $said == $'12559\n1' ]] || fail "code that is made, by the host's counter: $said"
 
 cat >"$work/scenario.yaml" <<END

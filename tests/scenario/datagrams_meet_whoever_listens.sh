@@ -33,7 +33,7 @@ robots:
       sender: {command: [python3, sends.py], start: 1s}
 YAML
 for accounting in measured fixed; do
-  timeout 60 "$tcsim" run "$out/s.yaml" --accounting "$accounting" --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+  timeout 200 "$tcsim" run "$out/s.yaml" --accounting "$accounting" --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
   python3 - "$out/run/summary.json" <<'PY' || fail "$accounting: $(cat "$out/said")"
 import json, sys
 summary = json.load(open(sys.argv[1]))

@@ -15,7 +15,7 @@ robots:
       waits: {command: [python3, -c, "import threading; threading.Event().wait()"]}
 YAML
 for accounting in fixed measured; do
-  timeout 60 "$tcsim" run "$out/s.yaml" --accounting $accounting --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+  timeout 200 "$tcsim" run "$out/s.yaml" --accounting $accounting --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
   for client in plain lending; do
     grep -q "^! 2 threads are in a deadlock from 0\.[0-9]* s on: r/$client waits for a lock that r/$client #[0-9]* has, r/$client #[0-9]* waits for a lock that r/$client has$" "$out/said" ||
       fail "$client: $(cat "$out/said")"

@@ -24,7 +24,7 @@ print(f["verdict"], f["found"], f["mend"], sep="\n")'
 }
 runs=0
 fly() {
-  "$@" timeout 60 "$out/bin/tcsim" run "$out/world.yaml" --accounting fixed --out "$out/run/$((++runs))" >"$out/said" 2>&1
+  "$@" timeout 200 "$out/bin/tcsim" run "$out/world.yaml" --accounting fixed --out "$out/run/$((++runs))" >"$out/said" 2>&1
 }
 
 works() {  # WORDS COMMAND...

@@ -24,7 +24,7 @@ works() {  # COMMAND...
   local finding
   finding=$(doctor "$@")
   [[ $finding == ok$'\n'* ]] || fail "$*: the doctor says $finding"
-  "$@" timeout 60 "$out/bin/tcsim" exec -- true >"$out/said" 2>&1 || fail "$*: $(cat "$out/said")"
+  "$@" timeout 200 "$out/bin/tcsim" exec -- true >"$out/said" 2>&1 || fail "$*: $(cat "$out/said")"
   ! grep -q 'SCHED_FIFO is not permitted' "$out/said" || fail "$*: the doctor sees nothing, but $(cat "$out/said")"
 }
 lacks() {  # REASON MEND COMMAND...
@@ -32,7 +32,7 @@ lacks() {  # REASON MEND COMMAND...
   shift 2
   finding=$(doctor "$@")
   [[ $finding == warning$'\n'*"($reason)"*$'\n'*"$mend"* ]] || fail "$*: the doctor says $finding"
-  "$@" timeout 60 "$out/bin/tcsim" exec -- true >"$out/said" 2>&1 || fail "$*: $(cat "$out/said")"
+  "$@" timeout 200 "$out/bin/tcsim" exec -- true >"$out/said" 2>&1 || fail "$*: $(cat "$out/said")"
   grep -qF "SCHED_FIFO is not permitted here, so gates keep the threads apart and the run takes longer: $reason; " \
     "$out/said" && grep -qF -- "$mend" "$out/said" || fail "$*: the run says $(cat "$out/said")"
 }
@@ -73,7 +73,7 @@ if [[ -w $top/cpu.rt_runtime_us ]] && (($(cat /proc/sys/kernel/sched_rt_runtime_
     mended "echo \$\$ >$group/tasks" prlimit --rtprio=0:0 setpriv --reuid=65534 --regid=65534 --clear-groups
   # A robot's programs have what the user has, not the group: see conformance.scheduling_rights.
   for accounting in measured fixed; do
-    mended "echo \$\$ >$group/tasks" timeout 60 "$tcsim" exec --accounting $accounting -- \
+    mended "echo \$\$ >$group/tasks" timeout 200 "$tcsim" exec --accounting $accounting -- \
       "$build/bin/conformance_scheduling_rights" $accounting >"$out/said" 2>&1 || fail "$accounting: $(cat "$out/said")"
   done
 fi

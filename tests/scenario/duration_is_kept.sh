@@ -9,7 +9,7 @@ mkfifo "$out/never"
 
 lasts() {  # NAME SECONDS ACCOUNTING [WORLD]: exactly so long, and nobody has failed
   printf '%s\n' "duration: $2s" "${4:-}" "robots: {r: {clients: {$clients}}}" >"$out/$1.yaml"
-  timeout 60 "$tcsim" run "$out/$1.yaml" --accounting "$3" --sync "${sync:-consistent}" --out "$out/$1" >"$out/$1.said" 2>&1 ||
+  timeout 200 "$tcsim" run "$out/$1.yaml" --accounting "$3" --sync "${sync:-consistent}" --out "$out/$1" >"$out/$1.said" 2>&1 ||
     fail "$1 $3: status $?: $(cat "$out/$1.said")"
   python3 - "$out/$1/summary.json" "$2" <<'PY' || fail "$1 $3: $(cat "$out/$1.said")"
 import json, sys
@@ -47,7 +47,7 @@ clients="$sleeping, $looking" sync=callback lasts looking 1.5 fixed
 # It ends earlier where all programs have ended.
 clients='a: {command: [sh, -c, "for i in 1 2 3; do sleep 1; echo $i; done"]}'
 printf '%s\n' 'duration: 100s' "robots: {r: {clients: {$clients}}}" >"$out/ends.yaml"
-timeout 60 "$tcsim" run "$out/ends.yaml" --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+timeout 200 "$tcsim" run "$out/ends.yaml" --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 grep -q 'ended before its 100.000 s because all programs had ended' "$out/said" || fail "$(cat "$out/said")"
 python3 -c '
 import json, sys

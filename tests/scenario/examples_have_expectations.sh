@@ -10,7 +10,7 @@ cd "$out"
 cp "$source_root"/examples/hover/* "$source_root"/examples/bridge/* .
 run() {  # STATUS FILE ARGUMENTS
   local status=0
-  timeout 120 "$tcsim" run "${@:2}" --out results >said 2>&1 || status=$?
+  timeout 200 "$tcsim" run "${@:2}" --out results >said 2>&1 || status=$?
   ((status == $1)) || fail "${*:2} exits with $status, not $1: $(cat said)"
 }
 breaks() {  # PATTERN FILE ARGUMENTS

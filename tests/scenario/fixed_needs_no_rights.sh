@@ -26,7 +26,7 @@ mkdir -m 777 "$out/with" "$out/without" "$out/contained" "$out/half_contained"
 fly() {  # FOLDER COMMAND...
   local folder=$1
   shift
-  env -i PATH="$PATH" HOME=/ timeout 80 "$@" run "$out/world.yaml" --accounting fixed --out "$out/$folder/run" \
+  env -i PATH="$PATH" HOME=/ timeout 200 "$@" run "$out/world.yaml" --accounting fixed --out "$out/$folder/run" \
     >"$out/$folder/said" 2>&1 || fail "$(cat "$out/$folder/said")"
 }
 fly with "$out/bin/tcsim"
