@@ -8,10 +8,13 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 debians=$(realpath "$(library libddsc.so.0debian)")
 
-# The very same library is what it is under any name.
+# In a network of its own: by sockets programs would meet those of other tests.
+dds_exec() { "$build/bin/in_own_network" "$tcsim" exec -- "$@"; }
+
+# The very same library is what it is under any name. (What others run may have sockets in its command line.)
 mkdir "$work/same"
 cp "$debians" "$work/same/libddsc.so.0debian"
-said=$("$tcsim" exec -- env LD_LIBRARY_PATH="$work/same" ddsperf -D 0.1 sanity 2>&1)
+said=$(dds_exec env LD_LIBRARY_PATH="$work/same" ddsperf -D 0.1 sanity 2>&1 | without_waits)
 grep -q sockets <<<"$said" && fail "a copy of Debian's library is refused: $said"
 
 # Another build has another build id; its version stands in the name of the file, behind the link.
@@ -24,7 +27,7 @@ assert library.count(build) == 1
 open(sys.argv[2], "wb").write(library.replace(build, build[::-1]))
 END
 ln -s libddsc.so.9.9.9 "$work/libddsc.so.0debian"
-said=$("$tcsim" exec -- env LD_LIBRARY_PATH="$work" bash -c \
+said=$(dds_exec env LD_LIBRARY_PATH="$work" bash -c \
   "ddsperf -D 2 pong & ddsperf -D 2 ping 100Hz; wait" 2>&1)
 [[ $(grep -c 'tcs: DDS in shared memory needs '"${debians##*/}"', but this program has .*/libddsc.so.9.9.9, so its DDS uses sockets' \
   <<<"$said") == 2 ]] || fail "not told once by each program: $said"
@@ -48,7 +51,7 @@ warned_of "its Cyclone DDS is not Debian's ${debians##*/}" \
 # So is one that brings a library with another name for itself, and looks functions up in it.
 sed 's/libddsc\.so\.0debian/libddsc.so.0bundle/' "$work/libddsc.so.9.9.9" >"$work/libddsc-bundled.so"
 cmp -s "$work/libddsc.so.9.9.9" "$work/libddsc-bundled.so" && fail "the library has not been renamed"
-said=$("$tcsim" exec -- python3 -c '
+said=$(dds_exec python3 -c '
 import ctypes, sys
 ddsc = ctypes.CDLL(sys.argv[1])
 participant = ddsc.dds_create_participant(0, None, None)
@@ -61,7 +64,7 @@ warned_of "it looks up Cyclone DDS's functions by itself, as Python's ctypes doe
   "{command: [python3, -c, 'import ctypes; ctypes.CDLL(\"$work/libddsc-bundled.so\").dds_create_participant(0, None, None)']}"
 
 # Who looks functions up in Debian's own has no sockets.
-said=$("$tcsim" exec -- python3 -c '
+said=$(dds_exec python3 -c '
 import ctypes, os, time
 def sockets():
     count = 0
