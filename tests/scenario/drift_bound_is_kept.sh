@@ -17,7 +17,7 @@ if role == "listen":
     peer, _ = listener.accept()
     while data := peer.recv(100): print(time.monotonic(), data.decode(), flush=True)
 else:
-    time.sleep(0.1)
+    time.sleep(0.5)  # the other one listens by then, whatever a busy host has charged to it
     peer = socket.create_connection(("127.0.0.1", port))
     for i in range(5):
         peer.send(b"x")
@@ -28,8 +28,8 @@ PY
 cat >"$out/scenario.yaml" <<'YAML'
 duration: 3s
 robots:
-  one: {clients: {listener: {command: [python3, peer.py, listen, "27432"]}}}
-  other: {clients: {speaker: {command: [python3, peer.py, speak, "27432"]}}}
+  one: {clients: {listener: {command: [python3, peer.py, listen, "27434"]}}}
+  other: {clients: {speaker: {command: [python3, peer.py, speak, "27434"]}}}
 YAML
 for bound in 0.1ms 1ms; do
   "$tcsim" run "$out/scenario.yaml" --drift "$bound" --out "$out/run" >"$out/said" 2>&1 ||
