@@ -155,5 +155,4 @@ ask_in_vain consistent
 was_killed consistent
 tcsim_pid=$callback_pid
 was_killed callback
-pgrep -f "$out/" >/dev/null && fail "something is left"
-true
+none_left "$out/" || fail "something is left: $(pgrep -af "$out/")"

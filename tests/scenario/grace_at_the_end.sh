@@ -67,11 +67,11 @@ robots:
       child: {command: [bash, -c, "trap '' TERM; (while :; do :; done) & wait; wait"]}
 YAML
 spinners_are_killed() {
-  timeout 60 "$tcsim" run "$out/spin.yaml" --set robots.r.clients.child=null --duration 200ms \
+  timeout 200 "$tcsim" run "$out/spin.yaml" --set robots.r.clients.child=null --duration 200ms \
     --set 'robots.r.clients.spinner.command=[python3, -c, "import signal\nsignal.signal(15, signal.SIG_IGN)\nwhile True: pass"]' \
     --accounting fixed --patience 1s --out "$out/spin" >"$out/spin.said" 2>&1 || fail "fixed: status $?: $(cat "$out/spin.said")"
   grep -q 'r/spinner was killed: after SIGTERM' "$out/spin.said" || fail "fixed: $(cat "$out/spin.said")"
-  timeout 60 "$tcsim" run "$out/spin.yaml" --out "$out/spin" >"$out/spin.said" 2>&1 || fail "status $?: $(cat "$out/spin.said")"
+  timeout 200 "$tcsim" run "$out/spin.yaml" --out "$out/spin" >"$out/spin.said" 2>&1 || fail "status $?: $(cat "$out/spin.said")"
   grep -q 'r/spinner was killed: after SIGTERM' "$out/spin.said" || fail "$(cat "$out/spin.said")"
 }
 beside spinners_are_killed
@@ -79,7 +79,7 @@ beside spinners_are_killed
 said_by() { cat "$out/run/$1.out.log"; }
 check() {
   local accounting=$1 status=0
-  timeout 80 "$tcsim" run "$out/s.yaml" --accounting "$accounting" --out "$out/run" \
+  timeout 200 "$tcsim" run "$out/s.yaml" --accounting "$accounting" --out "$out/run" \
     >"$out/said" 2>&1 || status=$?
   ((status == 0)) || fail "$accounting: status $status: $(cat "$out/said")"
   python3 - "$out/run" "$accounting" <<'PY' || fail "$accounting: $(tail -n 99 "$out/said" "$out"/run/*.log)"
@@ -94,9 +94,11 @@ def said(name): return open(folder + "/" + name + ".out.log").read()
 def handled(name, number, takes):  # the handler runs at the run's end, and is not cut off
     begun, signal, over = said(name).splitlines()
     at = float(re.fullmatch("signal %d at (.*)" % number, signal)[1])
-    assert 2.0 <= at < 2.05, signal
+    # They all have one core, and what a handler of Python's or a shell costs once is the host's.
+    soon = 0.05 if accounting == "fixed" else 0.25
+    assert 2.0 <= at < 2 + soon, signal
     until = float(re.fullmatch("over at (.*)", over)[1])
-    assert at + takes - 0.0015 <= until < at + takes + 0.05, (signal, over)
+    assert at + takes - 0.0015 <= until < at + takes + soon, (signal, over)
 handled("r-keeper", 15, 0.3)
 handled("r-interrupted", 2, 1.2)
 handled("r-child", 15, 0.1)  # all its processes get it
@@ -104,7 +106,7 @@ assert said("r-stdio") == "begun\nended by 15\n", said("r-stdio")
 assert said("r-shell") == "bye\n", said("r-shell")
 assert said("late-stopped") == "woken\n", said("late-stopped")
 for name in "late-too_slow", "late-short":
-    assert said(name).startswith("begun\nsignal 15 at 2.0") and "over" not in said(name), said(name)
+    assert said(name).startswith("begun\nsignal 15 at 2.") and "over" not in said(name), said(name)
 assert said("late-none") == "begun\n", said("late-none")
 killed = sorted(w.split()[0] for w in summary["warnings"] if "was killed" in w)
 assert killed == ["late/short", "late/too_slow"], summary["warnings"]
@@ -124,8 +126,8 @@ robots:
       keeper: {command: [bash, -c, "trap 'sleep 0.4; echo bye; exit' TERM; while :; do sleep 0.05; done"]}
       stdio: {command: [./stdio]}
 YAML
-timeout 60 "$tcsim" run "$out/world.yaml" --accounting fixed --out "$out/with" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
-timeout 60 "$tcsim" run "$out/world.yaml" --accounting fixed --out "$out/without" --set robots.r.clients.keeper.stop_grace=0 \
+timeout 200 "$tcsim" run "$out/world.yaml" --accounting fixed --out "$out/with" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+timeout 200 "$tcsim" run "$out/world.yaml" --accounting fixed --out "$out/without" --set robots.r.clients.keeper.stop_grace=0 \
   --set robots.r.clients.stdio.stop_signal=KILL >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 for file in bodies.csv activations.csv dispatches.csv trace.json; do
   cmp "$out/with/$file" "$out/without/$file" || fail "the grace changes $file"
@@ -134,5 +136,4 @@ done
 [[ -z $(cat "$out/without/"*.out.log) ]] || fail "a grace of 0 is none"
 
 all_done
-pgrep -f "$out/" && fail "something is left"
-true
+none_left "$out/" || fail "something is left: $(pgrep -af "$out/")"

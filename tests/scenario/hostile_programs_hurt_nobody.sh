@@ -30,14 +30,14 @@ scenario >"$out/alone.yaml"
 "$tcsim" run "$out/alone.yaml" --accounting fixed --out "$out/alone" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 grep -qx done "$out/alone/one-honest.out.log" || fail "the honest program was not done: $(cat "$out/alone/"*.log)"
 rounds() {  # FOLDER SEEDS
-  local at=$1 seed status deeds wrong sentences left failed=0
+  local at=$1 seed status deeds wrong sentences failed=0
   mkdir "$at"
   # A name of its own, by which all that is left can be found.
   cp "$build/bin/hostile" "$at/hostile"
   for seed in "${@:2}"; do
     scenario "$at/hostile" "$seed" >"$at/beside.yaml"
     status=0
-    timeout -s KILL 60 "$tcsim" run "$at/beside.yaml" --accounting fixed --out "$at/beside" \
+    timeout -s KILL 200 "$tcsim" run "$at/beside.yaml" --accounting fixed --out "$at/beside" \
       >"$at/said" 2>"$at/warned" || status=$?
     deeds=$(cat "$at/beside/other-hostile.out.log" 2>/dev/null || true)
     wrong=""
@@ -48,8 +48,7 @@ rounds() {  # FOLDER SEEDS
     sentences=$(grep -c hostile "$at/warned" || true)
     ((sentences <= 3)) || wrong="$wrong is spoken of in $sentences sentences"
     grep -q 'bug in tcs\|fault of tcsim' "$at/warned" && wrong="$wrong finds a bug"
-    left=$(pgrep -f "$at/hostile" || true)
-    [[ -z $left ]] || wrong="$wrong leaves processes: $left"
+    none_left "$at/hostile" || wrong="$wrong leaves processes: $(pgrep -f "$at/hostile" || true)"
     # Runs have no files there while they go, either.
     [[ -z $(new_in_shm) ]] || wrong="$wrong leaves something in /dev/shm: $(new_in_shm)"
     if [[ -n $wrong ]]; then
