@@ -24,13 +24,14 @@ PY
 view() {  # FOLDER SENTENCE
   local server url=
   : >"$out/viewed"
-  timeout 60 "$tcsim" view "$1" >"$out/viewed" 2>&1 & server=$!
-  for ((i = 0; i < 200; ++i)); do
+  timeout 300 "$tcsim" view "$1" >"$out/viewed" 2>&1 & server=$!
+  for ((i = 0; i < 2000; ++i)); do  # beside runs that have the processors it gets little of them
     url=$(grep -o 'http://[^ ,;]*' "$out/viewed" | head -1) && [[ $url ]] && break
     kill -0 $server 2>/dev/null || fail "view refuses $1: $(cat "$out/viewed")"
     sleep 0.05
   done
-  python3 -c 'import sys, urllib.request; sys.stdout.write(urllib.request.urlopen(sys.argv[1], timeout=30).read().decode())' "$url" >"$out/shown.html"
+  python3 -c 'import sys, urllib.request; sys.stdout.write(urllib.request.urlopen(sys.argv[1], timeout=150).read().decode())' \
+    "$url" >"$out/shown.html"
   kill $server; wait $server 2>/dev/null || true
   grep -q -- "$2" "$out/shown.html" || fail "the page at $url does not say '$2'"
 }
@@ -58,8 +59,9 @@ says '^! hover/controller ended at 1\.[34][0-9]* s with signal 11 (Segmentation 
 cp well.py controller.py
 for signal in INT KILL; do
   env --default-signal=INT "$tcsim" run --duration 1000s --accounting fixed --out stopped-$signal >"$out/said" 2>&1 & run=$!
-  for ((i = 0; i < 400; ++i)); do
+  for ((i = 0; i < 4000; ++i)); do  # it may have to wait for a processor first
     [[ -s stopped-$signal/dispatches.csv ]] && (($(wc -c <stopped-$signal/dispatches.csv) > 20000)) && break
+    kill -0 $run 2>/dev/null || fail "it ended by itself: $(cat "$out/said")"
     sleep 0.05
   done
   pid=$run
