@@ -11,20 +11,24 @@ trap 'forget_shared; rm -rf "$out"' EXIT
 g++ -std=c++20 -O1 "$source_root/tests/programs/fast_dds_hover.cc" -lfastrtps -lfastcdr -o "$out/hover_dds"
 cp "$source_root/examples/hover/hover_dds.yaml" "$out"
 fly() {  # NAME OPTION...
-  timeout 120 "$build/bin/in_own_network" "$tcsim" run "$out/hover_dds.yaml" --set robots.drone.clients.controller.dds=sockets \
+  timeout 200 "$build/bin/in_own_network" "$tcsim" run "$out/hover_dds.yaml" --set robots.drone.clients.controller.dds=sockets \
     --set expect.controller=null --out "$out/$1" "${@:2}" \
     >"$out/said" 2>&1 || fail "$1: status $?: $(cat "$out/said" "$out/$1"/*.log)"
 }
 fly measured
 for run in first second; do fly "$run" --accounting fixed; done
 for run in measured first; do
-  python3 - "$out/$run/drone-controller.out.log" <<'PY' || fail "$run: $(head -n 20 "$out/$run/drone-controller.out.log")"
+  samples=$out/$run/drone-controller.out.log
+  python3 - "$samples" "$run" <<'PY' || fail "$run: $(head -n 20 "$samples")"
 import sys
 samples = [tuple(map(int, line.split())) for line in open(sys.argv[1])]
 assert len(samples) > 450, len(samples)
 for (_, before, _, _), (_, after, _, _) in zip(samples, samples[1:]): assert after - before == 10_000_000, (before, after)
+late = 0  # where it is measured the host may be busy: three of a hundred, and by less than three periods
 for number, stamp, written, came in samples:
-    assert written == stamp and 0 <= came - stamp < (30_000_000 if number < 5 else 3_000_000), (stamp, written, came)
+    assert written == stamp and 0 <= came - stamp < 30_000_000, (stamp, written, came)
+    if number >= 5 and came - stamp >= 3_000_000: late += 1
+assert late <= (0 if sys.argv[2] == "first" else 0.03 * len(samples)), late
 assert sorted(came - stamp for _, stamp, _, came in samples)[len(samples) // 2] < 1_000_000
 PY
 done
