@@ -17,10 +17,10 @@ PY
 cat >eyes.py <<'PY'
 import json, socket
 s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-s.bind(("127.0.0.1", 47010))
+s.bind(("127.0.0.1", 27641))
 while True:
     s.recv(4096)
-    s.sendto(b'{"force": [0, 1, 0]}', ("127.0.0.1", 47011))
+    s.sendto(b'{"force": [0, 1, 0]}', ("127.0.0.1", 27642))
 PY
 cat >world.yaml <<YAML
 duration: 1s
@@ -34,13 +34,13 @@ robots:
       task: {command: [$build/bin/periodic_worker, "3000", "10000", "50"], class: periodic, priority: 60, deadline: 8ms}
       eyes: {command: [python3, eyes.py], class: periodic, priority: 50}
 channels:
-  eyes: {type: udp_json, sensors: {bodies: [ball], rate: 50, to: "127.0.0.1:47010"}}
-  push: {type: udp_json, commands: {body: ball, listen: "127.0.0.1:47011", latency: 5ms}}
+  eyes: {type: udp_json, sensors: {bodies: [ball], rate: 50, to: "127.0.0.1:27641"}}
+  push: {type: udp_json, commands: {body: ball, listen: "127.0.0.1:27642", latency: 5ms}}
 metrics: {height: {min: ball.z}}
 YAML
 run() {  # STATUS ARGUMENTS
   local status=0
-  timeout 120 "$tcsim" run --accounting fixed "${@:2}" >said 2>&1 || status=$?
+  timeout 200 "$tcsim" run --accounting fixed "${@:2}" >said 2>&1 || status=$?
   ((status == $1)) || fail "run ${*:2} exits with $status, not $1: $(cat said)"
 }
 says() { grep -qE -- "$1" said || fail "nobody said '$1': $(cat said)"; }
@@ -128,7 +128,7 @@ expect: {metric drawn: {last: 0, share: 0.5}}
 YAML
 trials() {  # STATUS ARGUMENTS
   local status=0
-  timeout 120 "$tcsim" trials drawn.yaml --accounting fixed --trials 4 "${@:2}" >said 2>&1 || status=$?
+  timeout 200 "$tcsim" trials drawn.yaml --accounting fixed --trials 4 "${@:2}" >said 2>&1 || status=$?
   ((status == $1)) || fail "trials ${*:2} exit with $status, not $1: $(cat said)"
 }
 trials 0 --out half --junit half.xml
