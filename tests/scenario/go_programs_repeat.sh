@@ -12,6 +12,7 @@ package main
 import (
 	"fmt"
 	"math/rand"
+	"os"
 	"time"
 )
 
@@ -60,7 +61,11 @@ func main() {
 	}
 	took := time.Since(begun)
 	fmt.Println(" |", took.Truncate(time.Microsecond))
-	if took < 100*time.Millisecond || took > 110*time.Millisecond {
+	longest := 110 * time.Millisecond
+	if len(os.Args) > 1 { // measured: what starting costs Go's threads is the host's
+		longest = 200 * time.Millisecond
+	}
+	if took < 100*time.Millisecond || took > longest {
 		panic("ten ticks of 10 ms")
 	}
 }
@@ -70,8 +75,8 @@ export HOME=$work CGO_ENABLED=0 GOFLAGS=-mod=mod
 runs=${3:-3}
 for how in plain stripped; do
   for ((run = 1; run <= runs; ++run)); do
-    timeout 60 "$tcsim" exec --accounting fixed -- sh -c "$work/$how" >"$work/$how.$run" 2>"$work/said" || fail "$how: $(cat "$work/said")"
+    timeout 200 "$tcsim" exec --accounting fixed -- sh -c "$work/$how" >"$work/$how.$run" 2>"$work/said" || fail "$how: $(cat "$work/said")"
     cmp "$work/$how.1" "$work/$how.$run" || fail "fixed runs of the $how program differ"
   done
 done
-timeout 60 "$tcsim" exec -- sh -c "$work/plain" >"$work/measured" 2>&1 || fail "measured: $(cat "$work/measured")"
+timeout 200 "$tcsim" exec -- sh -c "$work/plain measured" >"$work/measured" 2>&1 || fail "measured: $(cat "$work/measured")"
