@@ -32,8 +32,8 @@ for run in (one, two):
     for robot in ("first", "second"):
         planner, controller = (run["clients"][f"{robot}/{kind}"] for kind in ("planner", "controller"))
         assert planner["wait_status"] == 0 and planner["ended_at_ns"] > 0, planner
-        # It has had its computer all the time, but for what the controller had.
+        # It has had its computer all the time, but for what the controller had, and for what a busy host's disk had to read.
         without_ns = planner["ended_at_ns"] - planner["charged_ns"]
-        assert 0 <= without_ns <= controller["charged_ns"] + 3_000_000, (robot, without_ns)
+        assert 0 <= without_ns <= controller["charged_ns"] + 20_000_000, (robot, without_ns)
         assert controller["wait_status"] == 0 and controller["overruns"] == 0, controller
 PY
