@@ -8,7 +8,7 @@ import select
 import socket
 import struct
 
-SENSORS, MOTORS, STACK = ("127.0.0.1", 21030), ("127.0.0.1", 21031), ("127.0.0.1", 41032)
+SENSORS, MOTORS, STACK = ("127.0.0.1", 21030), ("127.0.0.1", 21031), ("127.0.0.1", 21032)
 SYNC, IMU, THRUST = 0xFE, 1, 2
 
 

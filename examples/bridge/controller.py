@@ -7,7 +7,7 @@ GOAL = (1.0, 2.0, 3.0)
 SYNC, IMU, THRUST = 0xFE, 1, 2
 
 link = socket.socket()
-while link.connect_ex(("127.0.0.1", 41032)):
+while link.connect_ex(("127.0.0.1", 21032)):
     link.close()
     time.sleep(0.01)
     link = socket.socket()

@@ -117,11 +117,11 @@ import socket, sys, time
 s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 if sys.argv[1] == "sends":
     for _ in range(20):
-        s.sendto(b"x", ("127.0.0.1", 41912))
+        s.sendto(b"x", ("127.0.0.1", 27912))
         time.sleep(0.1)
 else:
     time.sleep(1)
-    s.bind(("127.0.0.1", 41912))
+    s.bind(("127.0.0.1", 27912))
     while True: s.recv(10)
 PY
 cat >talk.yaml <<'YAML'

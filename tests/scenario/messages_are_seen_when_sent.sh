@@ -15,11 +15,11 @@ duration: 0.7s
 robots:
   drone:
     clients:
-      receiver: {command: ["$program", receive, "27431", "$packets"]}
+      receiver: {command: ["$program", receive, "27496", "$packets"]}
       planner: {command: ["$program", $work]}
   ground:
     clients:
-      sender: {command: ["$program", send, "27431", "1000", "$packets"]}
+      sender: {command: ["$program", send, "27496", "1000", "$packets"]}
 YAML
   for accounting in measured fixed; do
     for bound in 0.1ms 10ms; do

@@ -41,10 +41,10 @@ PY
 cat >eyes.py <<'PY'
 import json, socket
 s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-s.bind(("127.0.0.1", 47010))
+s.bind(("127.0.0.1", 27450))
 while True:
     reading = json.loads(s.recv(4096))
-    if reading["time"] == 0.5: s.sendto(b'{"force": [0, 2, 0]}', ("127.0.0.1", 47011))
+    if reading["time"] == 0.5: s.sendto(b'{"force": [0, 2, 0]}', ("127.0.0.1", 27451))
     print("tcs-metric seen", reading["bodies"]["ball"]["position"][2], reading["time"], flush=True)
 PY
 cat >world.yaml <<'YAML'
@@ -60,8 +60,8 @@ robots:
       buffered: {command: [python3, buffered.py], environment: {PYTHONUNBUFFERED: ""}}
       eyes: {command: [python3, eyes.py], start: 0s}
 channels:
-  eyes: {type: udp_json, sensors: {bodies: [ball], rate: 10, to: "127.0.0.1:47010"}}
-  push: {type: udp_json, commands: {body: ball, listen: "127.0.0.1:47011", latency: 20ms}}
+  eyes: {type: udp_json, sensors: {bodies: [ball], rate: 10, to: "127.0.0.1:27450"}}
+  push: {type: udp_json, commands: {body: ball, listen: "127.0.0.1:27451", latency: 20ms}}
 YAML
 cat >metrics.yaml <<'YAML'
 metrics:

@@ -75,7 +75,7 @@ run "$out/new.yaml"
 
 # The rest needs root.
 ((EUID == 0)) || exit 0
-sed 's/27431/27432/' "$out/scenario.yaml" >"$out/small.yaml"
+sed 's/27431/27435/' "$out/scenario.yaml" >"$out/small.yaml"
 if mkdir "$out/small" && mount -t tmpfs -o size=64k none "$out/small" 2>/dev/null; then
   trap 'umount "$out/small"; kill $(jobs -p) 2>/dev/null || true; rm -rf "$out"' EXIT
   refused 'cannot be made: .*No space left.*--out' "$tcsim" run "$out/small.yaml" --record --out "$out/small/run"
