@@ -72,7 +72,7 @@ robots:
   world: {cpu: ideal, clients: {$2}}
   robot: {clients: {sleeps: {command: [sleep, "9"]}}}
 YAML
-  timeout 80 "$tcsim" run "$out/$1.yaml" --accounting fixed --out "$out/$1" >"$out/$1.said" 2>&1 || fail "status $?: $(cat "$out/$1.said")"
+  timeout 200 "$tcsim" run "$out/$1.yaml" --accounting fixed --out "$out/$1" >"$out/$1.said" 2>&1 || fail "status $?: $(cat "$out/$1.said")"
   grep -Eq "$3" "$out/$1.said" || fail "$(cat "$out/$1.said")"
 }
 run talkers 'talker: {command: [python3, talks.py, "0"]}, other: {command: [python3, talks.py, "1"]}' \

@@ -9,7 +9,7 @@ trap 'rm -rf "$out"' EXIT
 cd "$out"
 "$tcsim" new hover >/dev/null
 cd hover
-said() { timeout 120 "$tcsim" run "$@" >"$out/said" 2>&1 || fail "$(cat "$out/said")"; }
+said() { timeout 200 "$tcsim" run "$@" >"$out/said" 2>&1 || fail "$(cat "$out/said")"; }
 says() { grep -q -- "$1" "$out/said" || fail "nobody said '$1': $(cat "$out/said")"; }
 
 # What keeps up is not worth a sentence.
@@ -103,12 +103,13 @@ robots: {r: {clients: {loop: {command: [python3, loop.py, WAY, "SECONDS"], class
 YAML
 for way in sleep timer; do
   sed "s/WAY/$way/; s/SECONDS/0.004/" loop.yaml >well.yaml
-  said well.yaml --out "$out/loop"
+  # Under set costs: a measured one is late where the host takes its processor for 6 ms unseen.
+  said well.yaml --accounting fixed --out "$out/loop"
   ! grep '^! ' "$out/said" || fail "$way: it kept up"
   says '10 ms *0 of [45][0-9]'
   sed "s/WAY/$way/; s/SECONDS/0.015/" loop.yaml >slow.yaml
   said slow.yaml --out "$out/loop"
-  says '^! r/loop missed \(all [0-9]*\|4[0-9] of [0-9]*\) of its deadlines (10 ms, the period of its timer), .*: it computes 1[56][0-9.]* ms each time, 1[56][0-9] % of a core'
+  says '^! r/loop missed \(all [0-9]*\|4[0-9] of [0-9]*\) of its deadlines (10 ms, the period of its timer), .*: it computes 1[456][0-9.]* ms each time, 1[456][0-9] % of a core'
 done
 
 # What is sent to a port before anybody listens there was never in a socket: the first one that is read is no older.
