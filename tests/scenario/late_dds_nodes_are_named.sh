@@ -29,7 +29,7 @@ done
 wait
 sed 's/hover_dds/slow_dds/' hover_dds.yaml >slow_dds.yaml
 for program in hover slow; do
-  timeout 60 "$tcsim" run "${program}_dds.yaml" --set 'expect={}' --accounting fixed --out $program >said 2>&1 || fail "$(cat said)"
+  timeout 200 "$tcsim" run "${program}_dds.yaml" --set 'expect={}' --accounting fixed --out $program >said 2>&1 || fail "$(cat said)"
   mv said $program.said
 done
 ! grep '^! ' hover.said || fail "it kept up"

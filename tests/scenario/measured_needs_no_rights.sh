@@ -63,7 +63,7 @@ run() {  # with|without|contained NAME SCENARIO ARGUMENTS...: into FOLDER/NAME
   shift 3
   [[ $folder == */with ]] || as=("${nobody[@]}")
   [[ $folder != */contained ]] || as+=("$out/bin/in_container_profile")
-  env -i PATH="$PATH" HOME=/ timeout 120 "$build/bin/in_own_network" "${as[@]}" "$out/bin/tcsim" run "$scenario" "$@" \
+  env -i PATH="$PATH" HOME=/ timeout 200 "$build/bin/in_own_network" "${as[@]}" "$out/bin/tcsim" run "$scenario" "$@" \
     --out "$folder/$name" >"$folder/$name.said" 2>&1 || fail "$(cat "$folder/$name.said")"
 }
 for rights in with without contained; do

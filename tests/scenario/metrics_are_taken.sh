@@ -77,7 +77,7 @@ metrics:
   pushed: {max: push.force_y}
 YAML
 cat world.yaml metrics.yaml >fall.yaml
-said() { timeout 120 "$tcsim" "$@" >said 2>&1 || fail "$(cat said)"; }
+said() { timeout 200 "$tcsim" "$@" >said 2>&1 || fail "$(cat said)"; }
 for run in first second; do said run fall.yaml --accounting fixed --out $run; done
 says() { grep -q -- "$1" said || fail "nobody said '$1': $(cat said)"; }
 says '^height  *scenario  *last 5.095  *101 '

@@ -9,7 +9,7 @@ chmod 755 "$out"
 refused() {  # PATTERN COMMAND...
   local pattern=$1 status=0
   shift
-  timeout 20 "$@" >"$out/stdout" 2>"$out/stderr" || status=$?
+  timeout 200 "$@" >"$out/stdout" 2>"$out/stderr" || status=$?
   sed -i '/^tcsim: other runs of tcsim have/d' "$out/stderr"  # they may
   ((status == 2)) || fail "exit status $status instead of 2: $*"
   [[ $(wc -l <"$out/stderr") == 1 ]] || fail "not one line: $(cat "$out/stderr")"
@@ -26,8 +26,8 @@ YAML
 python3 -c '
 import socket, time
 s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.bind(("127.0.0.1", 27431))
-print("bound", flush=True); time.sleep(60)' >"$out/holder" &
-for _ in $(seq 50); do grep -q bound "$out/holder" && break; sleep 0.1; done
+print("bound", flush=True); time.sleep(1000)' >"$out/holder" &
+for _ in $(seq 1000); do grep -q bound "$out/holder" && break; sleep 0.1; done
 refused 'port 27431 on 127.0.0.1 is taken' "$tcsim" run "$out/scenario.yaml" --out "$out/run"
 
 touch "$out/file"
@@ -47,12 +47,12 @@ mkdir "$out/no-topics"
 refused "'$out/no-topics' has no topics.json" "$tcsim" topics "$out/no-topics"
 
 mkdir "$out/busy"
-flock --no-fork "$out/busy" sleep 60 &
-for _ in $(seq 100); do flock -n "$out/busy" true || break; sleep 0.05; done
+flock --no-fork "$out/busy" sleep 1000 &
+for _ in $(seq 2000); do flock -n "$out/busy" true || break; sleep 0.05; done
 refused "another run writes to the folder '$out/busy'.*--out" "$tcsim" run "$out/scenario.yaml" --out "$out/busy"
 
 # Where not even a sentence can be written the status still says it.
-status=0; timeout 20 "$tcsim" run "$out/nowhere.yaml" 2>/dev/full || status=$?
+status=0; timeout 200 "$tcsim" run "$out/nowhere.yaml" 2>/dev/full || status=$?
 ((status == 2)) || fail "exit status $status instead of 2 with a stderr that is full"
 refused 'not everything could be printed: No space left' sh -c '"$1" doctor --json >/dev/full' sh "$tcsim"
 
@@ -65,7 +65,7 @@ refused 'port 27431 on 127.0.0.1 is taken' "$tcsim" run "$out/scenario.yaml" --o
 # Nor are its clients' logs removed by one that cannot; by one that can they are, and nothing else is.
 sed '/^channels/d; s/idle:/old:/' "$out/scenario.yaml" >"$out/old.yaml"
 sed 's/old:/new:/' "$out/old.yaml" >"$out/new.yaml"
-run() { timeout 60 "$tcsim" run "$1" --out "$out/logs" >"$out/said" 2>&1 || fail "$(cat "$out/said")"; }
+run() { timeout 200 "$tcsim" run "$1" --out "$out/logs" >"$out/said" 2>&1 || fail "$(cat "$out/said")"; }
 run "$out/old.yaml"
 echo mine >"$out/logs/mine.out.log"
 refused 'port 27431 on 127.0.0.1 is taken' "$tcsim" run "$out/scenario.yaml" --out "$out/logs"

@@ -137,7 +137,7 @@ for took, looks in answers:
 PY
 }
 answers_by() {  # PEER WAY SECONDS
-  timeout 100 "$tcsim" exec -- python3 client.py "$1" "$2" "$3" 5 27519 >"answers-$1-$2" 2>"said" || fail "$*: $(cat said)"
+  timeout 200 "$tcsim" exec -- python3 client.py "$1" "$2" "$3" 5 27519 >"answers-$1-$2" 2>"said" || fail "$*: $(cat said)"
   is_right "$*" "answers-$1-$2" "$3"
 }
 serve 0.033
@@ -180,9 +180,9 @@ func main() {
 }
 GO
   HOME=$out GOCACHE=$out/go GOFLAGS=-mod=mod go build -o client client.go
-  timeout 100 "$tcsim" exec -- ./client 127.0.0.1:27519 >answers-go 2>said || fail "go: $(cat answers-go said)"
+  timeout 200 "$tcsim" exec -- ./client 127.0.0.1:27519 >answers-go 2>said || fail "go: $(cat answers-go said)"
   is_right go answers-go 0
-  timeout 100 "$tcsim" exec --accounting fixed --outside-takes 20ms -- ./client 127.0.0.1:27519 >answers-go 2>said ||
+  timeout 200 "$tcsim" exec --accounting fixed --outside-takes 20ms -- ./client 127.0.0.1:27519 >answers-go 2>said ||
     fail "go, set costs: $(cat answers-go said)"
   awk '$1 < 20 || $1 >= 20.1 { exit 1 }' answers-go || fail "go, set costs: $(cat answers-go)"
 fi
@@ -198,7 +198,7 @@ robots:
 YAML
 burner='{clients: {burner: {command: [python3, -c, "while True: sum(range(1000))"], stop_signal: SIGKILL}}}'
 for name in fast slow; do
-  timeout 100 "$tcsim" run s.yaml --out "$name" >said 2>&1 || fail "$name: $(cat said)"
+  timeout 200 "$tcsim" run s.yaml --out "$name" >said 2>&1 || fail "$name: $(cat said)"
   is_right "$name" "$name/r-client.out.log" 0.001
   [[ $(cat "$name/r-ticker.out.log") == 0.500 ]] || fail "$name: ticks took $(cat "$name/r-ticker.out.log") s"
   grep -Eq '^r/client waited [0-9.]+ s for [0-9]+ answers from outside of the run, [0-9.]+ ms each$' said || fail "$(cat said)"
@@ -212,7 +212,7 @@ for takes in 5ms 100ms; do
     for run in 1 2; do
       [[ $takes == 100ms && $run == 2 ]] && continue
       # shellcheck disable=SC2086  # words of a command
-      timeout 100 "$tcsim" exec --accounting fixed --outside-takes "$takes" -- python3 client.py $client 3 27519 >"fixed-$run" 2>said ||
+      timeout 200 "$tcsim" exec --accounting fixed --outside-takes "$takes" -- python3 client.py $client 3 27519 >"fixed-$run" 2>said ||
         fail "$client, $takes: $(cat said)"
     done
     [[ $takes == 100ms ]] || cmp fixed-1 fixed-2 || fail "$client, $takes: two runs differ: $(cat fixed-1 fixed-2)"
@@ -250,13 +250,13 @@ PY
 python3 writer.py & outside+=("$!")
 for _ in $(seq 200); do [[ -e terminal ]] && break; sleep 0.05; done
 for file in fifo "$(cat terminal)"; do
-  apart=$(timeout 100 "$tcsim" exec --outside "$file" -- python3 reader.py "$file" 2>said) || fail "$file: $(cat said)"
+  apart=$(timeout 200 "$tcsim" exec --outside "$file" -- python3 reader.py "$file" 2>said) || fail "$file: $(cat said)"
   # The writer sleeps 40 ms, and takes its time.
   awk -v ms="$apart" 'BEGIN { exit !(ms >= 39 && ms < 60) }' || fail "$file: bytes came each $apart ms"
 done
 
 # Nobody waits for those whom nobody looks at, and for those who do not answer only as long as was set.
-[[ $(timeout 60 "$tcsim" exec -- python3 -c '
+[[ $(timeout 200 "$tcsim" exec -- python3 -c '
 import socket, time
 s = socket.socket(socket.AF_UNIX)
 s.connect("server.sock")
@@ -271,6 +271,6 @@ duration: 100s
 robots:
   r: {clients: {client: {command: [python3, client.py, unix, select, "1", "1"], outside: {patience: 200ms}}}}
 YAML
-timeout 60 "$tcsim" run patience.yaml --out patience >said 2>&1 || fail "patience: $(cat said)"
+timeout 200 "$tcsim" run patience.yaml --out patience >said 2>&1 || fail "patience: $(cat said)"
 grep -q "r/client has waited 0.2 s, of real time, for server.sock, which is outside of the run" said || fail "not named: $(cat said)"
 [[ -z $(new_in_shm) ]] || fail "left in /dev/shm: $(new_in_shm)"

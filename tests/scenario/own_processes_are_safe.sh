@@ -12,7 +12,7 @@ outsider=$!
 
 attacked() {  # COMMAND...
   local status=0
-  timeout -s KILL 60 "$@" >"$out/said" 2>"$out/warned" || status=$?
+  timeout -s KILL 200 "$@" >"$out/said" 2>"$out/warned" || status=$?
   ((status == 0)) || fail "status $status of $*: $(cat "$out/said" "$out/warned")"
   grep -q '^all refused$' "$out/said" || fail "$(cat "$out/said")"
   kill -0 $outsider || fail "a process outside the run was killed"
@@ -32,7 +32,7 @@ for victim in coordinator keeper; do
   "$tcsim" exec -- sh -c 'while [ ! -e "$0" ]; do :; done; i=0; while [ $i -lt 300000 ]; do i=$((i + 1)); done' \
     "$out/$victim" 2>"$out/warned" &
   run=$!
-  for _ in $(seq 1000); do
+  for _ in $(seq 4000); do
     process=$(coordinator_of $run 2>/dev/null || true)
     [[ -n $process ]] && break
     sleep 0.05
@@ -40,7 +40,7 @@ for victim in coordinator keeper; do
   [[ $victim == coordinator ]] || process=$(pgrep -P $run)
   kill -STOP "$process"
   touch "$out/$victim"
-  for _ in $(seq 1500); do kill -0 $run 2>/dev/null || break; sleep 0.02; done
+  for _ in $(seq 10000); do kill -0 $run 2>/dev/null || break; sleep 0.02; done
   ! kill -0 $run 2>/dev/null || fail "a run whose $victim was stopped hangs"
   wait $run || fail "status $?: $(cat "$out/warned")"
   [[ $victim == keeper ]] || grep -q '^tcsim: the coordinator .* was stopped by a signal' "$out/warned" ||

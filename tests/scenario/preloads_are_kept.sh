@@ -34,7 +34,7 @@ in_each_mode() {  # FUNCTION
 }
 prints() {  # MODE
   local mode=$1 run says
-  run=(timeout 30 "$tcsim" exec --accounting "$mode" -- sh -c)
+  run=(timeout 200 "$tcsim" exec --accounting "$mode" -- sh -c)
   says=$("${run[@]}" "$held")
   [[ $says == "3 3 3 " ]] || fail "$mode, without stdbuf: '$says'"
   says=$("${run[@]}" "$at_once")
@@ -52,7 +52,7 @@ shim="[^: ]*/libtcs_preload.so"
 lists() {  # PATTERN COMMAND...
   local says pattern=$1
   shift
-  says=$(timeout 30 "$@" 2>&1)
+  says=$(timeout 200 "$@" 2>&1)
   says=$(without_waits <<<"$says")
   [[ $says =~ ^1000\ $pattern$ ]] || fail "'$says' instead of '1000 $pattern': $*"
 }
@@ -80,9 +80,9 @@ jemalloc=$(library 'libjemalloc.so.2 .*x86-64')
 if [[ -n $jemalloc ]]; then
   maps='import time; time.sleep(1000); print("jemalloc" in open("/proc/self/maps").read())'
   jemalloc_is_there() {  # MODE
-    [[ $(LD_PRELOAD=$jemalloc timeout 30 "$tcsim" exec --accounting "$1" -- python3 -c "$maps") == True ]] ||
+    [[ $(LD_PRELOAD=$jemalloc timeout 200 "$tcsim" exec --accounting "$1" -- python3 -c "$maps") == True ]] ||
       fail "$1: jemalloc around tcsim"
-    [[ $(timeout 30 "$tcsim" exec --accounting "$1" -- env LD_PRELOAD="$jemalloc" python3 -c "$maps") == True ]] ||
+    [[ $(timeout 200 "$tcsim" exec --accounting "$1" -- env LD_PRELOAD="$jemalloc" python3 -c "$maps") == True ]] ||
       fail "$1: jemalloc inside"
   }
   in_each_mode jemalloc_is_there
@@ -113,7 +113,7 @@ asan=$(ldd ./checked | awk '/libasan/ {print $3}')
 checks() {  # SAID WORD WANTED COMMAND...
   local status=0 said=$1 word=$2 wanted=$3
   shift 3
-  timeout 60 "$@" ./checked "$word" >"$said" 2>&1 || status=$?
+  timeout 200 "$@" ./checked "$word" >"$said" 2>&1 || status=$?
   grep -qx 1000 "$said" || fail "$word: no virtual time: $* says $(cat "$said")"
   [[ $wanted == nothing ]] && { ((status == 0)) || fail "status $status: $*: $(cat "$said")"; return; }
   ((status != 0 && status != 124)) || fail "status $status: $*: $(cat "$said")"
@@ -169,7 +169,7 @@ os.write(1, b"%d\n" % round((time.monotonic() - begun) / 100))
 PY
 wraps() {  # MODE
   local says
-  says=$(timeout 30 "$tcsim" exec --accounting "$1" -- env LD_PRELOAD="$folder/twins.so" python3 wrapped.py) ||
+  says=$(timeout 200 "$tcsim" exec --accounting "$1" -- env LD_PRELOAD="$folder/twins.so" python3 wrapped.py) ||
     fail "$1, wrapped: status $?"
   [[ $says == 6 ]] || fail "$1, wrapped: '$says'"
 }
@@ -178,7 +178,7 @@ in_each_mode wraps
 faketime=$(find /usr/lib /usr/local/lib -name libfaketimeMT.so.1 2>/dev/null | head -n 1)
 dates() {  # MODE
   local says
-  says=$(timeout 30 "$tcsim" exec --accounting "$1" -- env LD_PRELOAD="$faketime" FAKETIME='@2001-02-03 04:05:06' \
+  says=$(timeout 200 "$tcsim" exec --accounting "$1" -- env LD_PRELOAD="$faketime" FAKETIME='@2001-02-03 04:05:06' \
     sh -c 'echo $$ >"$0"; date +%F; sleep 86400; date +%F' "of_faketime.$1") || fail "$1, libfaketime: status $?"
   # The library leaves them, also natively, where the shell that it was loaded into first ends.
   rm -f "/dev/shm/faketime_shm_$(<"of_faketime.$1")" "/dev/shm/sem.faketime_sem_$(<"of_faketime.$1")"

@@ -6,7 +6,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Topics: languages, threads, processes, determinism.
 program=$source_root/tests/scenario/runtimes/pool.py
 takes() {  # WORKERS CORES COST
-  said=$(timeout 60 "$tcsim" exec --accounting fixed --cores "$2" --call-cost "$3" -- python3 "$program" "$1" 2>&1) ||
+  said=$(timeout 200 "$tcsim" exec --accounting fixed --cores "$2" --call-cost "$3" -- python3 "$program" "$1" 2>&1) ||
     fail "$*: status $?: $said"
   said=$(without_waits <<<"$said")
   [[ $(wc -l <<<"$said") == 3 && $said != *"that is not"* ]] || fail "$*: $said"

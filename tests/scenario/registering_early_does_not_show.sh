@@ -34,7 +34,7 @@ robots:
       other: {command: [sh, -c, "sleep 0.01; sleep 0.01"]}
 END
 fly() { # NAME: a run; dispatches and activations are printed
-  timeout 40 "$tcsim" run "$out/scenario.yaml" --accounting fixed --out "$out/$1" >"$out/$1.said" 2>&1 ||
+  timeout 200 "$tcsim" run "$out/scenario.yaml" --accounting fixed --out "$out/$1" >"$out/$1.said" 2>&1 ||
     fail "$1: status $?: $(cat "$out/$1.said")"
   cat "$out/$1/dispatches.csv" "$out/$1/activations.csv"
 }

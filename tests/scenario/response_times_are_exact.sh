@@ -30,7 +30,7 @@ robot() { printf '  %s:\n%s    clients:\n' "$1" "${2:+    $2$'\n'}"; }
   robot lent; client a 0 "pi 40 1000 50000 9 500l1000u500 -- 10 0 50000 9 500l4000u500 -- 20 1200 50000 9 6000"
 } >"$out/s.yaml"
 for accounting in fixed measured; do
-  timeout 100 "$tcsim" run "$out/s.yaml" --accounting $accounting --out "$out/$accounting" >"$out/$accounting.said" 2>&1 || {
+  timeout 200 "$tcsim" run "$out/s.yaml" --accounting $accounting --out "$out/$accounting" >"$out/$accounting.said" 2>&1 || {
     grep -q "exit status 3" "$out/$accounting.said" && grep -q "blocked/a ended" "$out/$accounting.said" || fail "$(cat "$out/$accounting.said")"
     touch "$out/no_rights"  # SCHED_FIFO is nobody's here: without the last three
   }

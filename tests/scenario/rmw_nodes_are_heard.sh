@@ -7,7 +7,7 @@ out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 pair="$build/bin/rmw_pair talker 30 & $build/bin/rmw_pair listener 30; wait"
 for run in {1..8}; do
-  timeout 60 "$tcsim" exec -- sh -c "$pair" >"$out/said" 2>"$out/errors" ||
+  timeout 200 "$tcsim" exec -- sh -c "$pair" >"$out/said" 2>"$out/errors" ||
     fail "run $run exits with $?: $(cat "$out/errors" "$out/said")"
   # Another run may have the processors first, and this one then says so.
   errors=$(without_waits <"$out/errors")

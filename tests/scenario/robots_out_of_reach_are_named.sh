@@ -12,7 +12,7 @@ hover() {  # SED-SCRIPT FOR hover.yaml, MORE ARGUMENTS: a run of half a second
   sed "$1" hover.yaml >changed.yaml
   shift
   status=0
-  timeout 60 "$tcsim" run changed.yaml --set 'expect={}' --duration 500ms --out run "$@" >stdout 2>stderr || status=$?
+  timeout 200 "$tcsim" run changed.yaml --set 'expect={}' --duration 500ms --out run "$@" >stdout 2>stderr || status=$?
   sed -i '/^tcsim: other runs of tcsim have/d' stderr
 }
 says() { grep -Eq "^tcsim: $1" stderr || fail "no '$1' in: $(cat stderr)"; }
@@ -44,9 +44,9 @@ says 'drone/controller ended at .* with exit status 3: it printed nothing'
 mv hover.py.bak hover.py
 hover ''
 [[ -s run/summary.json ]] || fail "no summary"
-timeout -s KILL 60 "$tcsim" run changed.yaml --duration 1h --out run >stdout 2>stderr &
+timeout -s KILL 400 "$tcsim" run changed.yaml --duration 1h --out run >stdout 2>stderr &
 run=$!
-for _ in $(seq 200); do [[ -e run/trace.json && ! -e run/summary.json ]] && break; sleep 0.1; done
+for _ in $(seq 2000); do [[ -e run/trace.json && ! -e run/summary.json ]] && break; sleep 0.1; done
 kill -KILL "$(coordinator_of "$(pgrep -P "$run")")"
 status=0; wait "$run" || status=$?
 [[ $status != 0 && ! -e run/summary.json ]] || fail "status $status, and $(ls run)"
