@@ -77,7 +77,7 @@ PY
 # Runs have the processors, and the holder is to be as quick as a device.
 on_time python3 holder.py &
 holder=$!
-for _ in $(seq 200); do [[ -e terminal ]] && break; sleep 0.05; done
+for _ in $(seq 1000); do [[ -e terminal ]] && break; sleep 0.05; done
 terminal=$(cat terminal)
 
 is_right() {  # WHO, a file with its waits; the shortest is so many times a hold, at least and at most
