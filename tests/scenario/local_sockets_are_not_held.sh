@@ -96,7 +96,7 @@ fi
 
 ways=(sendto connect sendmsg raw)
 {
-  echo "duration: 0.5s"
+  echo "duration: 2s"  # they end before
   echo "robots:"
   for way in "${ways[@]}"; do
     echo "  looker-$way: {clients: {c: {command: [python3, look.py, $way]}}}"
@@ -105,9 +105,9 @@ ways=(sendto connect sendmsg raw)
 } >"$out/ways.yaml"
 for accounting in fixed measured; do
   "$tcsim" run "$out/ways.yaml" --accounting $accounting --out "$out/run" >"$out/said" 2>&1 || fail "$accounting: $(cat "$out/said")"
-  python3 - "$out/run" "${ways[@]}" <<'PY' || fail "$accounting: $(cat "$out/run"/*.log "$out/said")"
+  python3 - "$out/run" $accounting "${ways[@]}" <<'PY' || fail "$accounting: $(cat "$out/run"/*.log "$out/said")"
 import json, sys
-run, ways = sys.argv[1], sys.argv[2:]
+run, accounting, ways = sys.argv[1], sys.argv[2], sys.argv[3:]
 read = lambda name: [tuple(map(int, line.split())) for line in open(f"{run}/{name}-c.out.log")]
 for way in ways:
     sent, seen = read("sender-" + way), read("looker-" + way)
@@ -116,7 +116,9 @@ for way in ways:
         assert number == found
         assert in_vain <= ended, f"{way}, {number}: looked in vain at {in_vain}, sent by {ended}"
         assert began <= at, f"{way}, {number}: sent at {began}, found at {at}"
-    assert sent[0][2] - sent[0][1] <= 1_100_000, f"{way}: more than the drift bound"
+    # And what the call itself computes, which is the host's where it is measured.
+    most = 1_100_000 if accounting == "fixed" else 2_000_000
+    assert sent[0][2] - sent[0][1] <= most, f"{way}: more than the drift bound: {sent[0]}"
     assert seen[0][3] > 100, f"{way}: it has not looked before"
 assert json.load(open(run + "/summary.json"))["staleness_ns"] == 0
 PY

@@ -49,7 +49,9 @@ for run in sys.argv[2:]:
         # What the programs compute themselves between their two readings comes on top.
         middle = sorted(took)[len(took) // 2]
         assert 0 <= min(took) and middle <= 150_000, (min(took), middle)
-        assert summary["lateness_ns"] <= 100_000, summary["lateness_ns"]
+        # The host stops a thread late once in some thousand times.
+        assert sorted(took)[len(took) * 9 // 10] <= 300_000, sorted(took)[-40:]
+        assert summary["lateness_ns"] <= 2_000_000, summary["lateness_ns"]
         even = sorted(intervals)[len(intervals) // 20:-len(intervals) // 20]
         assert 700_000 < even[0] and even[-1] < 1_300_000, (even[0], even[-1])
         assert summary["dispatches"] <= 3.3 * packets + 200, summary["dispatches"]

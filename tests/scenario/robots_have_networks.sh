@@ -85,17 +85,18 @@ wait $one || fail "the first of two runs at once failed"
 wait $two || fail "the second of two runs at once failed"
 for name in measured first second; do
   said "$name" > "$scratch/$name.text"
-  python3 - "$scratch/$name.text" << 'PY' || fail "$name: $(cat "$scratch/$name.said" "$scratch/$name.text")"
+  python3 - "$scratch/$name.text" "$name" << 'PY' || fail "$name: $(cat "$scratch/$name.said" "$scratch/$name.text")"
 import re, sys
 text = open(sys.argv[1]).read()
-# A way there and one back, and little besides.
+# A way there and one back, and little besides: where it is measured, what the host makes of it, but no way more.
+more = 8 if sys.argv[2] == "measured" else 0
 udp = [float(t) for t in re.findall(r"udp b'FAR' \('10.42.0.2', 5000\) ([\d.]+)", text)]
-assert len(udp) == 3 and all(40 <= t < 41 for t in udp), udp
+assert len(udp) == 3 and all(40 <= t < 41 + more for t in udp), udp
 (connected,) = re.findall(r"connected ([\d.]+) \('10.42.0.2', 5000\) 10.42.0.1", text)
 (tcp,) = re.findall(r"tcp b'FAR' ([\d.]+)", text)
-assert all(40 <= float(t) < 42 for t in (connected, tcp)), (connected, tcp)
+assert all(40 <= float(t) < 42 + more for t in (connected, tcp)), (connected, tcp)
 (refused,) = re.findall(r"refused ([\d.]+)", text)
-assert 80 <= float(refused) < 84, refused
+assert 80 <= float(refused) < 84 + more, refused
 assert "nobody Network is unreachable" in text
 assert text.count("from 10.42.0.1") == 4
 PY
