@@ -32,4 +32,4 @@ PY
 "$tcsim" explain "$out/late" hover/controller --worst 9999 --json >"$out/explained.json" || fail "explain"
 "$tcsim" trace "$out/late" >"$out/said" || fail "$(cat "$out/said")"
 cd "$source_root/tests/scenario"
-timeout 200 python3 -B late_runs_have_pages.py "$out" || fail "the page is not as it should be"
+timeout 500 python3 -B late_runs_have_pages.py "$out" || fail "the page is not as it should be"

@@ -6,7 +6,7 @@ import re
 import subprocess
 import time
 
-PATIENCE = 100  # s of real time: so long no wait of a test takes, however busy the host is
+PATIENCE = 180  # s of real time: so long no wait of a test takes, however busy the host is, a processor's of others included
 
 
 def full_pipe():
@@ -56,7 +56,7 @@ class LiveRun:
 
     def ask(self, rest="", body=None, **changed):
         """The status and the body of the answer. `changed`: other headers, method or path than usual."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
         headers = {"Host": f"127.0.0.1:{self.port}", **changed.get("headers", {})}
         connection.putrequest(changed.get("method", "GET" if body is None else "POST"),
                               changed.get("path", f"/{self.token}/{rest}"), skip_host=True, skip_accept_encoding=True)

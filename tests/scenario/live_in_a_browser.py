@@ -104,6 +104,7 @@ def goes_on(browser, run):
     before = pixels(browser)
     # So slow that it is paused before its end on any host.
     choose(browser, "pace", "0.1")
+    run.until(lambda: run.status()["pace"] == 0.1)  # of two wishes at once the second may come first
     click(browser, "go")
     until(browser, "return tcs.run.end > 2.25 && tcs.time > 2.2")
     assert "The run goes on" in how(browser), how(browser)

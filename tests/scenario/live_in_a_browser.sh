@@ -9,4 +9,4 @@ done
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cd "$(dirname -- "${BASH_SOURCE[0]}")"
-timeout 280 python3 -B live_in_a_browser.py "$tcsim" "$build/examples/rover/scenario.yaml" "$out" || fail "the page is not as it should be"
+timeout 880 python3 -B live_in_a_browser.py "$tcsim" "$build/examples/rover/scenario.yaml" "$out" || fail "the page is not as it should be"

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
-from live import LiveRun
+from live import PATIENCE, LiveRun
 
 TCSIM, SCENARIO, OUT = sys.argv[1:]
 
@@ -18,7 +18,7 @@ def refused(run, what, status=403):
 
 def raw(run, request, most=1 << 20):
     """What the server says to these bytes, and how it leaves."""
-    with socket.create_connection(("127.0.0.1", run.port), timeout=20) as connection:
+    with socket.create_connection(("127.0.0.1", run.port), timeout=PATIENCE) as connection:
         try:
             connection.sendall(request)
         except (BrokenPipeError, ConnectionResetError):
@@ -101,8 +101,14 @@ def a_flood(run):
 
 def listens_on_this_machine_alone(run):
     server = subprocess.run(["pgrep", "-P", str(run.process.pid), "-x", "tcsim-view"], capture_output=True, text=True).stdout.strip()
-    inodes = {os.readlink(f"/proc/{server}/fd/{fd}")[8:-1] for fd in os.listdir(f"/proc/{server}/fd")
-              if os.readlink(f"/proc/{server}/fd/{fd}").startswith("socket:")}
+    inodes = set()
+    for fd in os.listdir(f"/proc/{server}/fd"):
+        try:
+            what = os.readlink(f"/proc/{server}/fd/{fd}")
+        except FileNotFoundError:
+            continue  # a connection that has been closed since
+        if what.startswith("socket:"):
+            inodes.add(what[8:-1])
     listening = []
     for table in ("tcp", "tcp6"):
         with open(f"/proc/{server}/net/{table}") as file:

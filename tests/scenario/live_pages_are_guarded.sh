@@ -6,4 +6,4 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cd "$(dirname -- "${BASH_SOURCE[0]}")"
-timeout 280 python3 -B live_pages_are_guarded.py "$tcsim" "$build/examples/rover/scenario.yaml" "$out" || fail "the server lets in whom it should not"
+timeout 450 python3 -B live_pages_are_guarded.py "$tcsim" "$build/examples/rover/scenario.yaml" "$out" || fail "the server lets in whom it should not"

@@ -46,7 +46,9 @@ def steps():
     with start("steps", "--pause") as run:
         assert "where it is paused until the page lets it go on" in run.words()
         run.stands_at(0)
-        assert run.news()["to"]["moments"] == 0 and run.news()["to"]["slices"] == 0, "something happened before the start"
+        # Where everything is at the start is a moment, which the server may have seen by now.
+        to = run.news()["to"]
+        assert to["moments"] <= 1 and to["slices"] == 0, ("something happened before the start", to)
         at = 0
         for step in (100 * MS, 37 * MS, 1, 12_345_678, 3 * MS):
             run.wish(f"step {step}")

@@ -7,5 +7,5 @@ out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 "$tcsim" run "$build/examples/rover/scenario.yaml" --accounting fixed --duration 2s --out "$out/plain" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 cd "$(dirname -- "${BASH_SOURCE[0]}")"
-timeout 280 python3 -B live_runs_are_held.py "$tcsim" "$build/examples/rover/scenario.yaml" "$out" || fail "a watched run is not as it should be"
+timeout 450 python3 -B live_runs_are_held.py "$tcsim" "$build/examples/rover/scenario.yaml" "$out" || fail "a watched run is not as it should be"
 [[ -z $(new_in_shm) ]] || fail "left in /dev/shm: $(new_in_shm)"

@@ -14,7 +14,7 @@ robots: {r: {clients: {c: {command: [sleep, "0.5"]}}}}
 YAML
 "$tcsim" run "$out/s.yaml" --accounting fixed --out "$out/plain" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 cd "$(dirname -- "${BASH_SOURCE[0]}")"
-timeout 200 python3 -B - "$tcsim" "$out" <<'PY' || fail "a paused run keeps its processor, or does not get it back"
+timeout 450 python3 -B - "$tcsim" "$out" <<'PY' || fail "a paused run keeps its processor, or does not get it back"
 import filecmp, os, signal, subprocess, sys
 from live import LiveRun
 tcsim, out = sys.argv[1:]
@@ -37,7 +37,7 @@ with LiveRun(tcsim, f"{out}/s.yaml", f"{out}/paused", "--pause") as run:
     run.tell("go")
     run.until(lambda: waits in run.words())
     assert run.status()["now"] < 400_000_000, ("it goes on without its processor", run.status())
-    other.communicate("\n", timeout=100)
+    other.communicate("\n", timeout=180)
     assert "interrupted" not in run.end()
 for file in "bodies.csv", "activations.csv", "dispatches.csv":
     assert filecmp.cmp(f"{out}/plain/{file}", f"{out}/paused/{file}", shallow=False), file

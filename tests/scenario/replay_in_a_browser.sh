@@ -38,4 +38,4 @@ YAML
 beside show crates "$out/crates.yaml"
 all_done
 cd "$(dirname -- "${BASH_SOURCE[0]}")"
-timeout 280 python3 -B replay_in_a_browser.py "$out" || fail "the page is not as it should be"
+timeout 880 python3 -B replay_in_a_browser.py "$out" || fail "the page is not as it should be"

@@ -110,7 +110,7 @@ onmessage = event => {
 <iframe src='probe.html' width=400 height=800 style='border:0'></iframe>
 <iframe src='probe.html#t=0.4-0.5' width=400 height=800 style='border:0'></iframe>""")
 PY
-timeout 100 chromium --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
+timeout 400 chromium --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
   --user-data-dir="$out/browser" --window-size=1000,900 --virtual-time-budget=8000 --dump-dom "file://$out/frames.html" \
   >"$out/seen.html" 2>"$out/seen.err" || fail "chromium: $(tail -3 "$out/seen.err")"
 python3 - "$out/seen.html" <<'PY' || fail "the page is not as it should be"
