@@ -11,8 +11,8 @@ example=$build/examples/predator_prey/scenario.yaml
 
 plan() { printf '{"name": "%s", "first_seed": 1, "trials": %s, "vary": %s}' "$2" "$3" "$4" >"$1/trials.json"; }
 fly() { "$tcsim" run "$example" --out "$out/$1" "${@:2}" >>"$out/said"; }
-fly tcs/seed-0001 --duration 1.2s --seed 1  # alone: its slices are compared with its real time
-beside fly tcs/seed-0002 --duration 1.2s --seed 2
+fly tcs/seed-0001 --duration 1.5s --seed 1  # alone: its slices are compared with its real time
+beside fly tcs/seed-0002 --duration 1.5s --seed 2
 mkdir "$out/tcs/seed-0003"
 echo 'tcsim: predator/planner cannot be started: <gone>' >"$out/tcs/seed-0003/tcsim.log"
 plan "$out/tcs" 'tcs & co' 3 null
@@ -21,7 +21,7 @@ beside fly sweep/0.5s/seed-0001 --duration 0.5s --accounting fixed
 beside fly sweep/1s/seed-0001 --duration 1s --accounting fixed
 all_done
 plan "$out/sweep" 'tcs & co' 1 '{"key": "duration", "values": ["0.5s", "1s"]}'
-# Planning for 1 s is what the example does.
+# Planning for 1 s is what the example does, and of 1.5 s there is time to start.
 python3 - "$out/tcs/seed-0001" <<'PY' || fail "the activations of a run are not what it did"
 import csv, json, sys
 rows = list(csv.DictReader(open(sys.argv[1] + "/activations.csv")))
@@ -126,7 +126,7 @@ for page in whole, part:
     assert ids == ["paths", "motion", "timeline", "response-times", "distances", "distance-over-time",
                    "measure-prey-controller.response_p99-duration", "sweep-duration"], ids
     assert all(figure["pictures"] == 1 for figure in page["figures"]), page["figures"]
-assert whole["view"].startswith("0.000 s to 1.200 s of virtual time"), whole["view"]
+assert whole["view"].startswith("0.000 s to 1.500 s of virtual time"), whole["view"]
 assert part["view"].startswith("0.400 s to 0.500 s of virtual time"), part["view"]
 slices = lambda view: int(view.split(", ")[1].split()[0])
 assert 0 < slices(part["view"]) < slices(whole["view"]) / 3, (part["view"], whole["view"])
