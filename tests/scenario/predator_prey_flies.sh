@@ -19,7 +19,7 @@ PY
 # The predator is on DDS: the robot's topics, and those on which its programs talk.
 topics=$("$tcsim" topics "$out")
 for line in '/predator/odom .* 100 Hz +0 +tcsim +predator/controller' '/prey/odom .* 100 Hz +0 +tcsim +predator/controller' \
-  '/predator/wrench .* 10[0-9.]* Hz +0 +predator/controller +tcsim' '/predator/plan_request +predator_prey_msgs/msg/PlanRequest +[23] '; do
+  '/predator/wrench .* (99[.]|10)[0-9.]* Hz +0 +predator/controller +tcsim' '/predator/plan_request +predator_prey_msgs/msg/PlanRequest +[23] '; do
   grep -Eq "^$line" <<<"$topics" || fail "no line '$line' in: $topics"
 done
 (($(wc -l <"$out/bodies.csv") > 600)) || fail "the body states are missing"

@@ -49,7 +49,9 @@ def took(client): return [row["end_ns"] - row["release_ns"] for row in rows[clie
 def cost(client, us):  # what a job computes: that, and its few calls
     executed = sorted(row["executed_ns"] for row in rows[client])
     middle = executed[len(executed) // 2]
-    assert us * 1000 <= middle <= us * 1000 + (12_000 if exact else 0.05 * us * 1000 + 60_000), (client, us, middle)
+    # Measured charges are those of the thread's clock, by which it computes, to 1 %.
+    less, more = (0, 12_000) if exact else (10 * us, 50 * us + 60_000)
+    assert us * 1000 - less <= middle <= us * 1000 + more, (client, us, middle)
     if exact: assert executed[1] == executed[-2] == middle, (client, executed)
     return middle
 
@@ -93,7 +95,7 @@ for n, row in enumerate(late):
     equal("overloaded", row["end_ns"] - row["release_ns"], sum(r["executed_ns"] for r in late[:n + 1]) - n * 10_000_000)
     assert row["queued_ns"] == max(0, (late[n - 1]["end_ns"] if n else 0) - row["release_ns"]), row
 over = clients["overloaded/a"]["deadline"]
-assert over["missed"] == over["judged"] >= 33, over
+assert over["missed"] == over["judged"] >= (33 if exact else 31), over
 # The more urgent one comes 1 ms later, in its midst.
 a, b = cost("later/a", 2000), cost("later/b", 3000)
 equal("later", middle(took("later/b")), a + b)
@@ -106,8 +108,11 @@ assert own["deadline_ns"] == 4_000_000 and own["period_of"] == "" and own["misse
 assert clients["own/a"]["deadline"]["missed"] == 0
 # The deadline of a's next job, at 10 ms, is later than b's, at 7: b goes on, and that job of a waits for it.
 a, b = cost("earliest/a", 1900), cost("earliest/b", 3900)
-equal("earliest, b", took("earliest/b")[0], a + b)
-equal("earliest, a waits", took("earliest/a")[1], a + b - 5_000_000 + a)
+# Measured, each with what it computed itself.
+first, second, b = (a, a, b) if exact else (rows[client][n]["executed_ns"] for client, n in
+                                            (("earliest/a", 0), ("earliest/a", 1), ("earliest/b", 0)))
+equal("earliest, b", took("earliest/b")[0], first + b)
+equal("earliest, a waits", took("earliest/a")[1], first + b - 5_000_000 + second)
 assert clients["earliest/a"]["deadline"]["missed"] == clients["earliest/b"]["deadline"]["missed"] == 0
 if not os.path.exists(out + "/no_rights"):
     # At 1 ms the low one has had the lock for 0.5 ms; the high one computes 0.5 ms, and waits for the other 3.5.
