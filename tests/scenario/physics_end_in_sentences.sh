@@ -32,11 +32,13 @@ robot 'damping="1"' >"$out/two.urdf"
 engines=(simbody)
 "$tcsim" check "$out/s.yaml" --set dynamics.engine=mujoco >"$out/said" 2>&1 && engines+=(mujoco)
 run() {  # ENGINE SETTINGS...
-  local engine=$1 set
+  local engine=$1 set status=0
   shift
   local settings=(--set "dynamics.engine=$engine")
   for set in "$@"; do settings+=(--set "$set"); done
-  "$tcsim" run "$out/s.yaml" --accounting fixed --out "$out/run" "${settings[@]}" >"$out/said" 2>&1
+  "$tcsim" run "$out/s.yaml" --accounting fixed --out "$out/run" "${settings[@]}" >"$out/all" 2>&1 || status=$?
+  without_waits <"$out/all" >"$out/said"
+  return "$status"
 }
 
 for engine in "${engines[@]}"; do
