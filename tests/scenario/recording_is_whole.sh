@@ -19,7 +19,7 @@ check same "$out/first" "$out/second"
 # A program that says what it read and wrote, in measured time; among it what nobody else reads, and
 # is for late readers, and of another domain.
 cat >"$out/scenario.yaml" <<YAML
-duration: 1s
+duration: 2s  # the witness ends after 0.9 s and what it computes
 dynamics: {gravity: [0, 0, -9.81]}
 bodies: {ship: {mass: 2, inertia: [0.1, 0.2, 0.25], angular_velocity: [0.3, 0.2, 0.1]}}
 robots: {r: {clients: {witness: {command: ["$build/bin/bag_witness", "90"], body: ship}}}}
