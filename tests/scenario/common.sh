@@ -76,7 +76,7 @@ idle_centiseconds() { awk '/^cpu / { print $5 + $6 }' /proc/stat; }
 kill_once_recorded() {  # TCSIM_PID BAG MESSAGES
   local _
   # It may have to wait for a processor first.
-  for _ in $(seq 600); do
+  for _ in $(seq 2000); do
     [[ -e $2/metadata.yaml && $(sed -n 's/^  message_count: //p' "$2/metadata.yaml") -gt $3 ]] && break
     sleep 0.1
   done

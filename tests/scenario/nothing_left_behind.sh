@@ -17,7 +17,7 @@ for victim in tcsim_pid:KILL keeper_pid:KILL coordinator_pid:KILL client_pid:KIL
   "$tcsim" exec -- sh -c "$program" 2>/dev/null &
   tcsim_pid=$!
   # The client and its child, both: tcsim's own processes have their words in their command lines, too.
-  for _ in $(seq 600); do
+  for _ in $(seq 1500); do
     (($(ps -eo comm=,args= | grep -c "^sh .*# $mark") >= 2)) && break
     sleep 0.1
   done
@@ -28,7 +28,8 @@ for victim in tcsim_pid:KILL keeper_pid:KILL coordinator_pid:KILL client_pid:KIL
     kill -TERM "$tcsim_pid" || fail "the death of a client ended its child's run"
   fi
   left=""
-  for _ in $(seq 100); do
+  # Those that end them may have to wait for a processor, too.
+  for _ in $(seq 500); do
     left=$(pgrep -af "$mark" | grep -v "^$$ " || true)
     [[ -z $left ]] && break
     sleep 0.1

@@ -5,7 +5,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # from it, whoever reaps its process would spin in the kernel for ever. Another argument: how many processes.
 # Topics: processes, threads.
 children=${3:-2000}
-seconds=$((children * 3 / 100))
+seconds=$((children * 3 / 100 + 150))  # it may have to wait for a processor
 watchers=()
 trap '((${#watchers[@]})) && kill "${watchers[@]}" 2>/dev/null; true' EXIT
 for ((cpu = 0; cpu < $(nproc); ++cpu)); do
