@@ -8,15 +8,21 @@
 #include <cstdio>
 
 int main() {
-  const time_t date = time(nullptr);
   timeval day, day_after;
   timespec before, after;
+  // From soon after a second has begun: else time() may pass into its next one on the way.
+  gettimeofday(&day, nullptr);
+  usleep(static_cast<useconds_t>(1'010'000 - day.tv_usec));
+  const time_t date = time(nullptr);
   gettimeofday(&day, nullptr);
   clock_gettime(CLOCK_MONOTONIC, &before);
   sleep(3600);
   clock_gettime(CLOCK_MONOTONIC, &after);
   gettimeofday(&day_after, nullptr);
-  printf("%ld %ld %ld on %d\n", static_cast<long>(time(nullptr) - date),
-         static_cast<long>(day_after.tv_sec - day.tv_sec),
-         static_cast<long>(after.tv_sec - before.tv_sec), sched_getcpu());
+  const time_t later = time(nullptr);
+  // Whole seconds that have passed.
+  printf("%ld %ld %ld on %d\n", static_cast<long>(later - date),
+         static_cast<long>(day_after.tv_sec - day.tv_sec - (day_after.tv_usec < day.tv_usec)),
+         static_cast<long>(after.tv_sec - before.tv_sec - (after.tv_nsec < before.tv_nsec)),
+         sched_getcpu());
 }
