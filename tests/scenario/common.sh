@@ -46,6 +46,9 @@ on_time() {
   if chrt -f 50 true 2>/dev/null; then exec chrt -f 50 "$@"; fi
   exec "$@"
 }
+# The same for this shell and what it starts, until `be_ordinary`: for what has to be done while a short run goes on.
+be_on_time() { chrt -f -p 50 $$ >/dev/null 2>&1 || true; }
+be_ordinary() { chrt -o -p 0 $$ >/dev/null 2>&1 || true; }
 # Starts a function beside what goes on already. `all_done` waits for all of these, and ends the test if one has failed.
 started=()
 beside() { "$@" & started+=("$!"); }
