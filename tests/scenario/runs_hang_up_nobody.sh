@@ -15,11 +15,11 @@ kill -9 $stopped 2>/dev/null; true'
 says() {  # WHAT IT SAYS COMMAND...
   local wanted=$1 said
   shift
-  said=$(setsid --wait timeout 60 bash -c "$script" script "$@" 2>&1 | without_waits)
+  said=$(setsid --wait timeout 150 bash -c "$script" script "$@" 2>&1 | without_waits)
   [[ $said == "$wanted" ]] || fail "$*: $said"
 }
 # That the kernel does so.
-hangs_up() { setsid --wait timeout 60 bash -c "$script" script "$@" 2>&1; }
+hangs_up() { setsid --wait timeout 150 bash -c "$script" script "$@" 2>&1; }
 hangs_up python3 -c '
 import os, signal
 signal.signal(signal.SIGHUP, signal.SIG_IGN)

@@ -22,13 +22,13 @@ expect_ns() {  # WHOSE WANTED_NS SAID [PERCENT]
 check() {  # NAME WANTED_NS COMMAND...
   local name=$1 wanted=$2 first='' said i
   shift 2
-  expect_ns "$name, measured" "$wanted" "$(timeout 60 "$tcsim" exec -- "$@")" 4
+  expect_ns "$name, measured" "$wanted" "$(timeout 150 "$tcsim" exec -- "$@")" 4
   for i in measured fixed; do
-    said=$(timeout 60 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $i -- "$@" 2>stderr) || fail "$name: $(cat stderr)"
+    said=$(timeout 150 "${nobody[@]}" "$work/bin/tcsim" exec --accounting $i -- "$@" 2>stderr) || fail "$name: $(cat stderr)"
     expect_ns "$name, $i, without rights" "$wanted" "$said" $([[ $i == fixed ]] || echo 4)
   done
   for ((i = 0; i < rounds; ++i)); do
-    said=$(timeout 60 "$tcsim" exec --accounting fixed -- "$@") || fail "$name, fixed: $said"
+    said=$(timeout 150 "$tcsim" exec --accounting fixed -- "$@") || fail "$name, fixed: $said"
     expect_ns "$name, fixed" "$wanted" "$said"
     ((${first:=$said} - said <= apart && said - first <= apart)) || fail "$name: $said, and $first before"
   done

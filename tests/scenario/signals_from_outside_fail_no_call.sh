@@ -10,9 +10,10 @@ check() {  # WHAT COMMAND...
   local what=$1 status=0 run client=
   shift
   : >"$out/said"
-  timeout 30 "$@" "$build/bin/never_waiting" 300 >"$out/said" 2>"$out/warned" &
+  # It may have to wait for a processor, and so may whoever sends.
+  timeout 150 "$@" "$build/bin/never_waiting" 300 >"$out/said" 2>"$out/warned" &
   run=$!
-  for _ in $(seq 300); do
+  for _ in $(seq 1500); do
     client=$(awk '/^calls as/ { print $3 }' "$out/said")
     [[ -z $client ]] || break
     sleep 0.1

@@ -14,17 +14,17 @@ signal.signal(signal.SIGINT, handle)
 print("waits as", __import__("os").getpid(), flush=True)
 threading.Event().wait()
 '
-timeout 60 "$source_root/tests/conformance/without_rights.sh" "$build" exec --accounting fixed -- python3 -c "$program" \
+timeout 200 "$source_root/tests/conformance/without_rights.sh" "$build" exec --accounting fixed -- python3 -c "$program" \
   >"$out/said" 2>"$out/warned" &
 run=$!
-for _ in $(seq 300); do
+for _ in $(seq 900); do
   grep -q '^waits as' "$out/said" && break
   sleep 0.1
 done
 client=$(awk '/^waits as/ { print $3 }' "$out/said")
 [[ -n $client ]] || fail "it never waited: $(cat "$out/said" "$out/warned")"
 # It is in its call then, and not just before it.
-for _ in $(seq 300); do
+for _ in $(seq 900); do
   [[ $(awk '{ print $3 }' "/proc/$client/stat") == S ]] && break
   sleep 0.1
 done

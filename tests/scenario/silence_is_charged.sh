@@ -79,7 +79,7 @@ C
 cc -O1 -pthread -o "$out/computing" "$out/computing.c"
 patience=() after="5 s"
 for cores in 1 2; do
-  timeout 60 "$tcsim" exec --accounting fixed --cores $cores "${patience[@]}" -- "$out/computing" >"$out/said" 2>"$out/warned" ||
+  timeout 100 "$tcsim" exec --accounting fixed --cores $cores "${patience[@]}" -- "$out/computing" >"$out/said" 2>"$out/warned" ||
     fail "$cores cores: status $?: $(cat "$out/said" "$out/warned")"
   [[ $(grep -c 'has computed for '"$after"' without a call' "$out/warned") == 1 ]] || fail "$cores cores: $(cat "$out/warned")"
   awk -v cores=$cores '

@@ -29,7 +29,7 @@ channels:
   wrench: {type: dds, commands: {body: ship, message: geometry_msgs/msg/Wrench, topic: /wrench}}
 YAML
 fly() {  # NAME OPTION...
-  timeout 120 "$build/bin/in_own_network" "$tcsim" run "$out/scenario.yaml" --out "$out/$1" "${@:2}" >"$out/said" 2>&1 || fail "$1: $(cat "$out/said")"
+  timeout 200 "$build/bin/in_own_network" "$tcsim" run "$out/scenario.yaml" --out "$out/$1" "${@:2}" >"$out/said" 2>&1 || fail "$1: $(cat "$out/said")"
   ! grep -i 'warning' "$out/said" || fail "$1: $(cat "$out/said")"
 }
 fly measured
@@ -83,6 +83,6 @@ duration: 60s
 clock: {}
 robots: {r: {clients: {it: {command: [sleep, "0.5"], dds: sockets}}}}
 YAML
-timeout 60 "$build/bin/in_own_network" "$tcsim" run "$out/short.yaml" --out "$out/short" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+timeout 200 "$build/bin/in_own_network" "$tcsim" run "$out/short.yaml" --out "$out/short" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 python3 -c 'import json, sys; ns = json.load(open(sys.argv[1]))["virtual_ns"]; assert 500_000_000 <= ns < 600_000_000, ns' "$out/short/summary.json" ||
   fail "a run without programs goes on: $(cat "$out/said")"

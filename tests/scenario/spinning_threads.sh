@@ -9,7 +9,7 @@ out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 run() { # CORES PROGRAM ARGUMENT... with the options in $options
   # shellcheck disable=SC2086  # several options
-  timeout 60 "$tcsim" exec $options --cores "$1" -- "${@:2}" 2>"$out/err" || fail "$*: $(cat "$out/err")"
+  timeout 150 "$tcsim" exec $options --cores "$1" -- "${@:2}" 2>"$out/err" || fail "$*: $(cat "$out/err")"
 }
 between() { # LEAST MOST VALUE WHAT
   awk -v least="$1" -v most="$2" -v value="$3" 'BEGIN { exit !(least <= value && value <= most) }' ||

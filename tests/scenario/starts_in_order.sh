@@ -39,7 +39,7 @@ YAML
 check() {  # FOLDER MORE_OPTIONS...
   local folder=$1 status=0
   shift
-  (cd "$out" && timeout 80 "$tcsim" run scenarios/s.yaml --out "$folder" "$@") >"$out/$folder.said" 2>&1 || status=$?
+  (cd "$out" && timeout 150 "$tcsim" run scenarios/s.yaml --out "$folder" "$@") >"$out/$folder.said" 2>&1 || status=$?
   # The first one has failed, and those after it have been started all the same.
   ((status == 1)) || fail "$*: status $status: $(cat "$out/$folder.said")"
   grep -q '^tcsim: q/first ended at 1.* with exit status 3' "$out/$folder.said" || fail "$(cat "$out/$folder.said")"
@@ -87,14 +87,14 @@ check run --accounting fixed
 # A client that starts when all others have ended is waited for; with a world, too.
 for world in "" $'dynamics: {}\nbodies: {b: {mass: 1, inertia: [1, 1, 1]}}'; do
   printf '%s\n' 'duration: 100s' "$world" 'robots: {r: {clients: {a: {command: [date, +%s], start: 70s}, b: {command: ["true"]}}}}' >"$out/late.yaml"
-  timeout 60 "$tcsim" run "$out/late.yaml" --accounting fixed --out "$out/late" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+  timeout 150 "$tcsim" run "$out/late.yaml" --accounting fixed --out "$out/late" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
   [[ $(cat "$out/late/r-a.out.log") == $((1704067200 + 70)) ]] || fail "it saw $(cat "$out/late/r-a.out.log")"
   grep -q 'ended before its 100.000 s because all programs had ended' "$out/said" || fail "$(cat "$out/said")"
 done
 
 # Each trial has folders of its own.
 sed 's/"3"\], start/"0"], start/' "$out/scenarios/s.yaml" >"$out/scenarios/well.yaml"
-timeout 80 "$tcsim" trials "$out/scenarios/well.yaml" --trials 2 --accounting fixed --out "$out/trials" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+timeout 150 "$tcsim" trials "$out/scenarios/well.yaml" --trials 2 --accounting fixed --out "$out/trials" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 for seed in 1 2; do
   grep -q " $out/trials/seed-000$seed/q-first deep,link,tool" "$out/trials/seed-000$seed/q-first.out.log" || fail "$(cat "$out/trials/seed-000$seed/q-first.out.log")"
   [[ -e $out/trials/seed-000$seed/q-second/by-second ]] || fail "trial $seed has no folder"
@@ -104,7 +104,7 @@ done
 printf '%s\n' 'duration: 9s' 'robots: {r: {clients: {a: {command: [rmdir, gone]}, b: {command: ["true"], start: 1s, working_directory: gone}}}}' >"$out/gone.yaml"
 mkdir "$out/gone"
 status=0
-timeout 60 "$tcsim" run "$out/gone.yaml" --out "$out/run" >"$out/said" 2>&1 || status=$?
+timeout 150 "$tcsim" run "$out/gone.yaml" --out "$out/run" >"$out/said" 2>&1 || status=$?
 ((status == 1)) || fail "status $status: $(cat "$out/said")"
 grep -q "^tcsim: r/b ended at 1.* exit status 127: .*the working directory $out/gone cannot be entered: No such file" "$out/said" || fail "$(cat "$out/said")"
 wait "$busy"

@@ -18,7 +18,8 @@ print("deaf", flush=True)
 while True: time.sleep(0.01)
 PY
 begun() {  # RUN: until it has begun, and stands if it is to
-  for ((i = 0; i < 1200; ++i)); do
+  # It may have to wait for a processor first.
+  for ((i = 0; i < 3000; ++i)); do
     kill -0 "$run" 2>/dev/null || fail "$*: $(cat said)"
     if [[ $* == *--pause* ]]; then
       # Where everything is at the start. Before, nothing has begun of which there could be a summary.

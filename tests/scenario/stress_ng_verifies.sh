@@ -6,7 +6,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 expect_verified() {
   local said accounting
   for accounting in measured fixed; do
-    said=$(timeout 60 "$tcsim" exec --accounting "$accounting" -- stress-ng --verify "$@" 2>&1) ||
+    said=$(timeout 150 "$tcsim" exec --accounting "$accounting" -- stress-ng --verify "$@" 2>&1) ||
       fail "$accounting: stress-ng $*: $said"
     [[ $said == *"successful run completed"* && $said != *unsuccessful* && $said != *fail:* ]] ||
       fail "$accounting: stress-ng $*: $said"

@@ -41,9 +41,9 @@ refused 'write it like drift' --trials 4 --vary drift
 refused "csv_perriod.*did you mean 'csv_period'" --trials 4 --vary csv_perriod=1ms,2ms
 refused '--vary drift and --drift' --trials 4 --vary drift=1ms,2ms --drift 1ms
 refused 'is too large for 2 seeds' --trials 2 --first-seed 18446744073709551615
-flock --no-fork "$out/t" sleep 60 &
+flock --no-fork "$out/t" sleep 200 &
 holder=$!
-for _ in $(seq 100); do flock -n "$out/t" true || break; sleep 0.05; done
+for _ in $(seq 1200); do flock -n "$out/t" true || break; sleep 0.05; done
 refused 'another tcsim trials is at work' --trials 4
 kill "$holder"
 wait "$holder" || true

@@ -15,7 +15,7 @@ victims() {  # what to kill of the call whose process is $1
 for victim in guardian:KILL trials:KILL both:KILL guardian:TERM guardian:HUP; do
   "$tcsim" trials "$out/scenario.yaml" --duration 1h --trials 2 --out "$out/t" >/dev/null 2>&1 &
   call=$!
-  for _ in $(seq 300); do pgrep -f "python.*$mark" >/dev/null && break; sleep 0.1; done
+  for _ in $(seq 1000); do pgrep -f "python.*$mark" >/dev/null && break; sleep 0.1; done
   pgrep -f "python.*$mark" >/dev/null || fail "no trial has begun"
   # shellcheck disable=SC2046
   kill "-${victim#*:}" $(victims "$call" "${victim%:*}")
@@ -27,7 +27,7 @@ done
 # A run that is killed is one trial that failed.
 "$tcsim" trials "$out/scenario.yaml" --duration 1h --trials 1 --out "$out/t" >"$out/said" 2>&1 &
 call=$!
-for _ in $(seq 300); do pgrep -f "python.*$mark" >/dev/null && break; sleep 0.1; done
+for _ in $(seq 1000); do pgrep -f "python.*$mark" >/dev/null && break; sleep 0.1; done
 kill -KILL "$(victims "$call" run)"
 status=0; wait "$call" || status=$?
 ((status == 1)) || fail "exit status $status: $(cat "$out/said")"

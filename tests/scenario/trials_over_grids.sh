@@ -69,7 +69,7 @@ addEventListener('load', () => {
 frames = open("frames.html").read()
 open("frames.html", "w").write("<script>onmessage = event => document.title = event.data</script>" + frames)
 PY
-timeout 100 chromium --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
+timeout 200 chromium --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
   --user-data-dir="$out/browser" --window-size=1000,900 --virtual-time-budget=4000 --dump-dom "file://$out/frames.html" \
   >seen.html 2>seen.err || fail "chromium: $(tail -3 seen.err)"
 python3 - <<'PY' || fail "the page is not as it should be"

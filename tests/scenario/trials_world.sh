@@ -33,7 +33,7 @@ same() {  # FOLDER FOLDER: of two runs
 
 nothing_is_left() {
   local left=""
-  for _ in $(seq 200); do
+  for _ in $(seq 600); do
     left=$(pgrep -af "$mark|$out" | grep -v "^$$ " || true)
     [[ -z $left ]] && return
     sleep 0.1

@@ -47,7 +47,8 @@ run() { "$tcsim" run "$out/unix.yaml" --out "$out/run" >"$out/said" 2>&1; }
 # One that is killed.
 rm -f "$out/eyes.sock"
 "$tcsim" run "$out/unix.yaml" --set duration=1h --out "$out/killed" >"$out/said" 2>&1 &
-for _ in $(seq 100); do [[ -S $out/hands.sock && -s $out/killed/bodies.csv ]] && break; sleep 0.1; done
+# It may have to wait for a processor, for which it has its socket by then.
+for _ in $(seq 1000); do [[ -S $out/hands.sock && -s $out/killed/bodies.csv ]] && break; sleep 0.1; done
 [[ -S $out/hands.sock ]] || fail "the run has made no socket"
 kill -KILL "$(coordinator_of $!)"
 wait $! || true
@@ -73,8 +74,8 @@ refused "longer than a UNIX socket's name may be (107 bytes)" --set "channels.ha
 python3 -c '
 import socket, sys, time
 s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM); s.bind(sys.argv[1])
-print("bound", flush=True); time.sleep(60)' "$out/hands.sock" >"$out/holder" &
-for _ in $(seq 100); do grep -q bound "$out/holder" && break; sleep 0.05; done
+print("bound", flush=True); time.sleep(200)' "$out/hands.sock" >"$out/holder" &
+for _ in $(seq 1200); do grep -q bound "$out/holder" && break; sleep 0.05; done
 refused "'$out/hands.sock' is taken by another program; end that program, or choose another path"
 [[ -S $out/hands.sock ]] || fail "a socket that another program has was removed"
 

@@ -113,7 +113,7 @@ def one_round(party, folder):
             return table.exists() and table.read_text().count("\n") > 1
 
         if random.random() < 0.8:  # else while it starts
-            if not until(has_begun, 60):
+            if not until(has_begun, 200):
                 return "the run did not begin"
         time.sleep(random.random() * 0.4)
         victim = find(party, run.pid)
@@ -132,10 +132,10 @@ def one_round(party, folder):
                 return f"the run ended with its {party}"
             run.terminate()
         try:
-            run.wait(30)
+            run.wait(100)
         except subprocess.TimeoutExpired:
             return "tcsim hangs"
-        if not until(lambda: not marked(), 15):
+        if not until(lambda: not marked(), 60):
             return "there is still: " + ", ".join("%d %s" % (pid, name(pid)) for pid in marked())
         words = said.read_text()
         words = re.sub(r"tcsim: other runs of tcsim have.*\n", "", words)
@@ -163,7 +163,7 @@ def unread(out):
         columns = text.split("\n", 1)[0].count(",")
         if not text.endswith("\n") or any(line.count(",") != columns for line in text.splitlines()):
             return f"{table.name} ends in half a line"
-    report = subprocess.run([TCSIM, "report", str(out), "--out", str(out / "page.html")], timeout=60,
+    report = subprocess.run([TCSIM, "report", str(out), "--out", str(out / "page.html")], timeout=200,
                             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if report.returncode != 0 or "cut off" not in report.stderr:
         return f"report: status {report.returncode}: {report.stderr}"
