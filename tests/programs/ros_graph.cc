@@ -120,7 +120,7 @@ void Show(const dds_topic_descriptor_t& described) {
   const dds_entity_t topic =
       OrDie(dds_create_topic(participant, &type, "ros_discovery_info", nullptr, nullptr), "topic");
   const dds_entity_t info = OrDie(dds_create_reader(participant, topic, qos, nullptr), "read");
-  dds_sleepfor(DDS_MSECS(100));
+  dds_sleepfor(DDS_MSECS(300));
 
   Graph graph;
   TakeAll<dds_builtintopic_participant_t>(participants, [&graph](const auto& sample) {

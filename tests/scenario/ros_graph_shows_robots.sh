@@ -7,13 +7,13 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/scenario.yaml" <<YAML
-duration: 1s
+duration: 3s
 dynamics: {}
 bodies:
   ship: {mass: 1, inertia: [0.1, 0.1, 0.1]}
   wreck: {mass: 1, inertia: [0.1, 0.1, 0.1]}
 robots:
-  7-seas: {clients: {captain: {command: [sleep, "1"], body: ship}}}
+  7-seas: {clients: {captain: {command: [sleep, "3"], body: ship}}}
   tools:
     clients:
       humble: {command: ["$build/bin/ros_graph", humble]}
