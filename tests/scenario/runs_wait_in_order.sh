@@ -30,7 +30,7 @@ begin() {  # NAME
 }
 
 for cpu in ${two//,/ }; do
-  flock --no-fork "/sys/devices/system/cpu/cpu$cpu" sh -c "echo held >'$out/held$cpu'; exec sleep 80" &
+  flock --no-fork "/sys/devices/system/cpu/cpu$cpu" sh -c "echo held >'$out/held$cpu'; exec sleep 200" &
   holders+=($!)
 done
 await "the processors are not had" held
@@ -52,7 +52,11 @@ done
 
 # Neither the one that dies nor the one that stops keeps a place that others wait for.
 kill -9 "${pid_of[killed]}"
-kill -STOP "$(coordinator_of "${pid_of[stopped]}")" "${pid_of[stopped]}"
+coordinator=$(coordinator_of "${pid_of[stopped]}")
+kill -STOP "$coordinator" "${pid_of[stopped]}"
+# A process stops once it has the processor.
+is_stopped() { [[ $(ps -o state= "$1") == T ]]; }
+await "the coordinator does not stop" is_stopped "$coordinator"
 kill "${holders[@]}"
 holders=()
 for k in $(seq 10); do
