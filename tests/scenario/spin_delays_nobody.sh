@@ -28,8 +28,9 @@ def slices(row):
     return [(int(e["ts"] * 1000), int(e["dur"] * 1000))
             for e in events if e["ph"] == "X" and (e["pid"], e["tid"]) == rows[row]]
 starts = {start for start, _ in slices("punctual/loop")}
-late = [k for k in range(5, 200) if k * 10_000_000 not in starts]
-assert not late, f"no dispatch exactly at {late[:5]} x 10 ms, but at {sorted(starts)[5:10]}"
+# From when Perl has started, which takes a slow host some tens of ms.
+late = [k for k in range(20, 200) if k * 10_000_000 not in starts]
+assert not late, f"no dispatch exactly at {late[:5]} x 10 ms, but at {sorted(starts)[20:25]}"
 spun = sum(length for _, length in slices("busy/spin"))
 assert spun > 1_990_000_000, spun
 drift = json.load(open(sys.argv[1] + "/summary.json"))["drift_ns"]
