@@ -29,7 +29,7 @@ names() {
   file=${log:-$file}
   until grep -Eq "$pattern" "$file" 2>/dev/null; do
     [ -e "/proc/$run" ] || fail "'$*' has ended: $(cat "$file")"
-    ((++tries < 400)) || fail "'$*' does not say '$pattern': $(cat "$file")"
+    ((++tries < 1500)) || fail "'$*' does not say '$pattern': $(cat "$file")"
     sleep 0.1
   done
   sleep 0.5
@@ -79,10 +79,11 @@ log=$out/trials/seed-0001/tcsim.log goes names trials "$held" \
 
 # Nothing to say.
 input_comes() {
-  # Others may have all processors at real-time priority, and for so long no input would come.
-  on_time bash -c 'for i in 1 2 3 4; do sleep 1.5; echo "$i"; done' |
+  # Others may have all processors at real-time priority, and for so long no input would come. Nor is it read so long: for
+  # 4.5 s nothing is said of that.
+  on_time bash -c 'for i in {1..12}; do sleep 0.5; echo "$i"; done' |
     "${unprivileged[@]}" "$tcsim" exec -- cat >"$out/comes.stdout" 2>"$out/comes.stderr"
-  [[ $(wc -l <"$out/comes.stdout") == 4 ]] || fail "of what is read: $(cat "$out/comes.stdout")"
+  [[ $(wc -l <"$out/comes.stdout") == 12 ]] || fail "of what is read: $(cat "$out/comes.stdout")"
   ! grep -q 'stood still' "$out/comes.stderr" || fail "input that comes: $(cat "$out/comes.stderr")"
 }
 at_a_terminal() {
