@@ -6,7 +6,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/scenario.yaml" <<END
-duration: 3s
+duration: 10s  # what the planner computes takes a slow host three
 robots:
   robot:
     cpu: {cores: 4}
