@@ -9,10 +9,12 @@ trap 'rm -rf "$out"' EXIT
 chmod 755 "$out"
 install -m 755 "$build/bin/asked_to_stop" "$out"
 client() {  # NAME ENDED_BEFORE
-  echo "      $1: {command: [bash, -c, 'for i in \$(seq $2); do /bin/true; done; exec $out/asked_to_stop'], stop_signal: SIGINT, stop_grace: 2s}"
+  echo "      $1: {command: [bash, -c, 'for i in \$(seq $2); do /bin/true; done; exec $out/asked_to_stop'], stop_signal: SIGINT, stop_grace: 10s}"
 }
 {
-  printf 'duration: 3s\nrobots:\n  r:\n    clients:\n'
+  # Time goes by at once where all wait: enough of it for a busy host's forks, and real time for the grace, which is
+  # some twice as long at most.
+  printf 'duration: 20s\nrobots:\n  r:\n    clients:\n'
   client none 0
   client some 33
   client many 70
@@ -24,7 +26,7 @@ check() {  # WHAT FOLDER
   done
 }
 for accounting in measured fixed; do
-  timeout 60 "$tcsim" run "$out/s.yaml" --accounting "$accounting" --out "$out/$accounting" >"$out/said" 2>&1 ||
+  timeout 150 "$tcsim" run "$out/s.yaml" --accounting "$accounting" --out "$out/$accounting" >"$out/said" 2>&1 ||
     fail "$accounting: status $?: $(cat "$out/said")"
   check "$accounting" "$out/$accounting"
 done
