@@ -39,6 +39,10 @@ for run in measured first; do
 import csv, json, sys
 folder, description = sys.argv[1], int(sys.argv[2])
 MS = 1_000_000
+# How long the first sample may take to a program that is ready, any sample, and most. What programs compute is the host's
+# where it is measured.
+fixed = folder.endswith("/first")
+soon, most, usual = (120 * MS, 3 * MS, MS) if fixed else (250 * MS, 15 * MS, 3 * MS)
 lines = {who: [line.split() for line in open(f"{folder}/ship-{who}.out.log")] for who in ("early", "late")}
 def of(who, kind): return [tuple(map(int, words[1:])) for words in lines[who] if words[0] == kind]
 # Each sample of what a reliable reader has met, in order, with its timestamp, within what a loopback and the program take.
@@ -46,11 +50,11 @@ for topic, period in (("odom", 10 * MS), ("clock", 50 * MS)):
     for who in lines:
         samples = of(who, topic)
         [(ready,)] = of(who, "ready")
-        assert samples[0][2] - ready < 120 * MS, (who, topic, ready, samples[0])
+        assert samples[0][2] - ready < soon, (who, topic, ready, samples[0])
         for (before, *_), (after, *_) in zip(samples, samples[1:]): assert after - before == period, (who, before, after)
         for stamp, written, came in samples:
-            assert written == stamp and 0 <= came - stamp < 3 * MS, (who, topic, stamp, written, came)
-        assert sorted(came - stamp for stamp, _, came in samples)[len(samples) // 2] < MS, (who, topic)
+            assert written == stamp and 0 <= came - stamp < most, (who, topic, stamp, written, came)
+        assert sorted(came - stamp for stamp, _, came in samples)[len(samples) // 2] < usual, (who, topic)
     start = of("early", topic)[0][0]
     assert of("early", topic)[-1][0] - of("late", topic)[-1][0] in (0, period, -period)
 # What is kept for whoever comes late is the same.
@@ -64,7 +68,8 @@ real = json.load(open(folder + "/summary.json"))
 print(len(sent), len(commands), sent[:3], commands[:3])
 assert 0 <= len(sent) - len(commands) <= 2, (len(sent), len(commands))
 first = sent[0] - commands[0]  # the date at the start, but for the way
-for at, acted in zip(sent, commands): assert abs(at - acted - first) < 2 * MS, (at, acted, first)
+off = [abs(at - acted - first) for at, acted in zip(sent, commands)]
+assert max(off) < (2 * MS if fixed else most) and sorted(off)[len(off) // 2] < usual, (max(off), first)
 # It is nobody's program.
 assert list(real["clients"]) == ["ship/early", "ship/late", "shore/graph"] and list(real["robots"]) == ["ship", "shore"]
 PY
