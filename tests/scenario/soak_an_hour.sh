@@ -6,7 +6,20 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Topics: soak, processes.
 seconds=${3:-1200}
 out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
+watch=''
+trap 'kill "$watch" 2>/dev/null || true; rm -rf "$out"' EXIT
+# The coordinator's memory and descriptors, twenty times a second.
+cat >"$out/watch.py" <<'PY'
+import os, sys, time
+def child_of(process): return open(f"/proc/{process}/task/{process}/children").read().split()[0]
+while True:
+    try:
+        coordinator = child_of(child_of(sys.argv[1]))
+        memory, = (line.split()[1] for line in open(f"/proc/{coordinator}/status") if line.startswith("VmRSS:"))
+        print(memory, len(os.listdir(f"/proc/{coordinator}/fd")), flush=True)
+    except (OSError, IndexError, ValueError): pass  # it is not there yet, or no more
+    time.sleep(0.05)
+PY
 {
   echo "duration: $((seconds + 60))s"
   echo "robots:"
@@ -20,15 +33,12 @@ trap 'rm -rf "$out"' EXIT
 } >"$out/scenario.yaml"
 "$tcsim" run "$out/scenario.yaml" --accounting fixed --out "$out/run" >"$out/said" 2>&1 &
 run=$!
-while kill -0 "$run" 2>/dev/null; do
-  coordinator=$(coordinator_of "$run" 2>/dev/null | head -1 || true)
-  if [[ -n $coordinator ]]; then
-    echo "$(sed -n 's/^VmRSS:[[:space:]]*\([0-9]*\) kB/\1/p' "/proc/$coordinator/status" 2>/dev/null)" \
-      "$(ls "/proc/$coordinator/fd" 2>/dev/null | wc -l)" >>"$out/sizes" || true
-  fi
-  sleep 0.05
-done
+# A third of the looks are from the first third of the run only if it looks as often while the run has the processors.
+on_time python3 "$out/watch.py" "$run" >"$out/sizes" &
+watch=$!
 wait "$run" || fail "$(cat "$out/said")"
+kill "$watch"
+wait "$watch" || true
 python3 - "$out" "$seconds" <<'PY'
 import json, pathlib, sys
 out, seconds = pathlib.Path(sys.argv[1]), int(sys.argv[2])
