@@ -4,13 +4,13 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # their gate and the moment at which their clock is set. Nobody is expelled for that, nor charged more than its CPU clock
 # has counted; less, where a busy host lets the tracer wait, and the program compute meanwhile, out of turn. Threads that
 # are new then (a planner's clock thread, with each plan) are the hard ones.
-# The run keeps a pace, or on a busy host it would be over before the tracer is there.
+# The run keeps a pace, or on a busy host it would be over before the tracer is there, which has to be on time itself.
 # Topics: debuggers, accounting, threads.
 type strace >/dev/null 2>&1 || exit 77
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 for cpus in 1 auto; do
-  "$tcsim" run "$build/examples/predator_prey/scenario.yaml" --duration 1500ms --pace 0.6 --host-cpus "$cpus" --out "$out/run" \
+  "$tcsim" run "$build/examples/predator_prey/scenario.yaml" --duration 1500ms --pace 0.4 --host-cpus "$cpus" --out "$out/run" \
     >"$out/said" 2>&1 &
   run=$!
   # It may have to wait for a processor first.
@@ -18,7 +18,7 @@ for cpus in 1 auto; do
     coordinator=$(coordinator_of $run 2>/dev/null) && [[ -e $out/run/predator-planner.out.log ]] && break
     sleep 0.02
   done
-  timeout 60 strace -o "$out/calls" -p "$coordinator" >"$out/strace" 2>&1 || true
+  (on_time timeout 200 strace -o "$out/calls" -p "$coordinator" >"$out/strace" 2>&1) || true
   status=0
   wait $run || status=$?
   ! grep -q 'not permitted' "$out/strace" || { echo "nobody may be traced here"; exit 77; }
