@@ -11,9 +11,10 @@ done
 slurm=$(mktemp -d)
 slurm_processes=()
 
-start_slurm() {  # NUMBER of nodes: n1, n2, ...
-  local last=$1 host user port node version
-  host=$(uname -n) user=$(id -un) port=$((21000 + $$ % 1000 * 10))
+start_slurm() {  # NUMBER of nodes: n1, n2, ... [SECONDS] after which one is missed
+  local last=$1 missed=${2:-60} host user port node version
+  # Ports that no other test has.
+  host=$(uname -n) user=$(id -un) port=$((28000 + $$ % 400 * 10))
   host=${host%%.*}
   chmod 755 "$slurm"  # munged wants that of its socket's folder
   mkdir "$slurm"/{state,spool,log}
@@ -40,8 +41,8 @@ ReturnToService=2
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SlurmdParameters=config_overrides
-SlurmdTimeout=5
-MessageTimeout=5
+SlurmdTimeout=$missed
+MessageTimeout=$((missed < 15 ? missed : 15))
 KillWait=5
 SchedulerParameters=batch_sched_delay=0,sched_interval=1
 NodeName=n[1-$last] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + last))] CPUs=1
@@ -55,11 +56,11 @@ CONF
   munged --foreground --socket="$slurm/munge.sock" --key-file="$slurm/munge.key" --pid-file="$slurm/munge.pid" \
     --log-file="$slurm/log/munge" --seed-file="$slurm/munge.seed" &>/dev/null &
   slurm_processes+=($!)
-  for _ in $(seq 100); do [[ -S $slurm/munge.sock ]] && break; sleep 0.1; done
+  for _ in $(seq 600); do [[ -S $slurm/munge.sock ]] && break; sleep 0.1; done
   slurmctld -D -f "$SLURM_CONF" &>/dev/null &
   slurm_processes+=($!)
   for node in $(seq "$last"); do start_node "n$node"; done
-  for _ in $(seq 300); do
+  for _ in $(seq 900); do
     (($(sinfo -h -N -t idle -o %N 2>/dev/null | wc -l) == last)) && return
     sleep 0.1
   done
@@ -96,8 +97,8 @@ jobs_of() {  # NODE: what sbatch was told to run
 }
 
 # Slurm takes a moment to clear away behind a job that has ended.
-no_jobs() {  # [OPTIONS of squeue]; within $tenths of a second, 100 unless told
-  for _ in $(seq "${tenths:-100}"); do [[ -z $(squeue -h "$@") ]] && return; sleep 0.1; done
+no_jobs() {  # [OPTIONS of squeue]; within $tenths of a second, 300 unless told
+  for _ in $(seq "${tenths:-300}"); do [[ -z $(squeue -h "$@") ]] && return; sleep 0.1; done
   fail "jobs are left: $(squeue)"
 }
 

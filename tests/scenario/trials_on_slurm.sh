@@ -9,7 +9,9 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
 trap 'end_slurm; pkill -9 -f "$mark|$out"; rm -rf "$out"' EXIT
 many=$((${TCS_SLURM_TRIALS:-16} / 2))
 trials=("$tcsim" trials "$out/scenario.yaml" --accounting fixed --trials "$many" --vary duration=3s,3100ms --vary csv_period=10ms)
-start_slurm 4
+missed=60
+[[ ${3:-} != unaided ]] || missed=5
+start_slurm 4 $missed
 timeout 400 "${trials[@]}" --out "$out/local" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 
 # Until n2 is caught at work it has the sweep for itself, so that the others cannot be through before.
@@ -27,7 +29,9 @@ at_work() {
     if [[ -e $run/bodies.csv && ! -e $run/summary.json && -e $run/bodies.csv ]]; then basename "${run%.*}"; fi
   done
 }
-for _ in $(seq 400); do (($(results))) && break; sleep 0.05; done
+# Trials last a quarter of a second.
+be_on_time
+for _ in $(seq 2400); do (($(results))) && break; sleep 0.05; done
 # A job that is stopped cannot hand in what it has run; and with all that it has started it cannot run it to its end, either.
 signal_jobs() {  # SIGNAL PROCESS...: the processes, and then all that they have started
   local signal=$1
@@ -37,7 +41,8 @@ signal_jobs() {  # SIGNAL PROCESS...: the processes, and then all that they have
   kill "-$signal" $(with_descendants "$@") 2>/dev/null || true
 }
 jobs="" lost=""
-for _ in $(seq 400); do
+for _ in $(seq 2000); do
+  [[ -e /proc/$call ]] || break
   [[ -n $jobs ]] || jobs=$(jobs_of n2)
   # shellcheck disable=SC2086
   if [[ -n $jobs ]] && signal_jobs STOP $jobs; then
@@ -51,6 +56,7 @@ for _ in $(seq 400); do
 done
 [[ -n $lost ]] || fail "n2 runs nothing: $(cat "$out/said")"
 kill_node n2
+be_ordinary
 scontrol update NodeName=n[1,3-4] State=RESUME
 # Slurm would find out by itself, after some 15 s; the job ends alike when an administrator knows it before.
 [[ ${3:-} == unaided ]] || scontrol update NodeName=n2 State=DOWN Reason=killed
@@ -84,4 +90,4 @@ nodes | sort | uniq -c
 printf -v folder '%s,10ms/seed-%04d' "${value[lost % 2]}" $((1 + lost / 2))
 grep -q '"node": "n2"' "$out/there/$folder/job.json" && fail "the dead node has handed in the trial that it lost"
 # One of a dead node's takes longer to go.
-tenths=300 no_jobs
+tenths=600 no_jobs

@@ -89,10 +89,18 @@ set -m
 "$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 400ms --launcher slurm --trials 10 --jobs 1 \
   --out "$out/resumed" >"$out/said" 2>&1 &
 call=$!
-for _ in $(seq 600); do [[ -e $out/resumed/seed-0001/summary.json ]] && break; sleep 0.05; done
-name=$(ls "$out/resumed/slurm")
+# All of them are over soon after the first one, and Slurm may take longer to answer.
+interrupt() {
+  while [[ ! -e $out/resumed/seed-0001/summary.json && -e /proc/$call ]]; do sleep 0.05; done
+  kill -INT -- "-$call"
+}
+be_on_time
+interrupt &
+interrupted=$!
+for _ in $(seq 1200); do name=$(ls "$out/resumed/slurm" 2>/dev/null) && [[ -n $name ]] && break; sleep 0.05; done
+be_ordinary
 (($(squeue -h --array --name="$name" | wc -l) <= 1)) || fail "more than one job: $(squeue --array)"
-kill -INT -- "-$call"
+wait "$interrupted" || fail "it has ended before: $(cat "$out/said")"
 status=0; wait "$call" || status=$?
 ((status == 130)) || fail "exit status $status after ^C: $(cat "$out/said")"
 grep -Eq 'interrupted; [0-9]+ of 10 trials are done, and the same call goes on' "$out/said" || fail "$(cat "$out/said")"
