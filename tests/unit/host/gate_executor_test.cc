@@ -39,7 +39,7 @@ TEST(GateExecutor, SendsAThreadThatComputesToItsGateByASignalWithTheNumberOfItsD
   if (child == 0) {
     Catch(shm::kPreemptionSignal);
     if (write(caught[1], "x", 1) != 1) _exit(7);
-    alarm(10);
+    alarm(100);
     for (volatile bool computes = true; computes;) {
     }
     _exit(0);
