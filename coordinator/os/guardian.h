@@ -23,6 +23,7 @@ namespace tcs {
 struct GuardLimits {
   unsigned look_every_s = 30;
   unsigned stop_within_s = 10;
+  unsigned say_within_s = 3;  // where it went astray
 };
 
 // Runs `coordinate` in a child process and returns its exit status once nothing that descends from

@@ -32,9 +32,6 @@ namespace {
 // Between looks at whether a stop is one of the whole job.
 constexpr std::int64_t kStopTurnNs = 100'000'000;
 
-// What the coordinator has to say where it goes astray.
-constexpr std::int64_t kSayWithinNs = 3'000'000'000;
-
 // True if a signal has stopped the process, or is about to.
 bool IsStopped(pid_t pid) {
   const SignalSets sets = ReadSignalSets(pid);
@@ -170,7 +167,8 @@ class Keeper {
              " of the last " + std::to_string(limits_.look_every_s) +
              " s in the kernel), and is killed; this is a fault of tcsim, please report it",
          SIGABRT);
-    stop_by_ns_ = HostClockNs(CLOCK_MONOTONIC) + kSayWithinNs;
+    stop_by_ns_ =
+        HostClockNs(CLOCK_MONOTONIC) + std::int64_t{limits_.say_within_s} * shm::kNsPerSecond;
   }
 
   static constexpr std::int64_t kNever = INT64_MAX;

@@ -30,13 +30,13 @@ class Strays : public ::testing::Test {
     }
   }
 
-  // A child that waits or spins, for some seconds at most, with that priority.
+  // A child that waits or spins, for a minute at most, with that priority.
   pid_t Make(int priority, bool bound, bool spins) {
     int ready[2];
     EXPECT_EQ(pipe(ready), 0);
     const pid_t pid = fork();
     if (pid == 0) {
-      alarm(20);
+      alarm(60);
       cpu_set_t cpus;
       CPU_ZERO(&cpus);
       CPU_SET(static_cast<std::size_t>(claim_.cpu), &cpus);

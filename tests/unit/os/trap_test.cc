@@ -37,7 +37,7 @@ class TrappedThread {
   ~TrappedThread() {
     const UniqueFd listener(listener_);
     pollfd call{listener.get(), POLLIN, 0};
-    while (listener && poll(&call, 1, 5000) == 1 && (call.revents & POLLIN) != 0) {
+    while (listener && poll(&call, 1, 60'000) == 1 && (call.revents & POLLIN) != 0) {
       if (const auto rest = ReceiveTrapped(listener.get())) {
         ContinueTrapped(rest->listener, rest->id);
       }
@@ -91,6 +91,11 @@ void AwaitMark(pid_t tid) {
   for (int look = 0; look < 5000 && !IsMarkedForSignal(tid); ++look) usleep(1000);
 }
 
+// A thread whose call has been received may be on its way to sleep, which looks like a mark.
+void AwaitSleep(pid_t tid) {
+  for (int look = 0; look < 5000 && IsMarkedForSignal(tid); ++look) usleep(1000);
+}
+
 TEST(Trap, OnlyTheThreadThatTheKernelHasChosenForASignalIsMarked) {
   if (!TrapsHoldSignals()) GTEST_SKIP() << "takes Linux 5.19";
   HandleWith(0);
@@ -98,6 +103,7 @@ TEST(Trap, OnlyTheThreadThatTheKernelHasChosenForASignalIsMarked) {
   TrappedThread thread([] { syscall(SYS_sched_yield); });
   if (!thread.is_trapped()) GTEST_SKIP() << "no trap here";
   const TrappedCall call = thread.Await(SYS_sched_yield);
+  AwaitSleep(call.tid);
   EXPECT_FALSE(IsMarkedForSignal(call.tid));
   kill(getpid(), SIGUSR1);  // this thread handles it
   EXPECT_EQ(g_handled, 1);
