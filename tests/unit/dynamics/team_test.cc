@@ -24,6 +24,7 @@ int SomeCpu() {
   return cpu;
 }
 
+// One that has been joined may be there for a moment more.
 std::ptrdiff_t ThreadsOfThis() {
   return std::distance(std::filesystem::directory_iterator("/proc/self/task"), {});
 }
@@ -68,10 +69,16 @@ TEST(Team, AsksNobodyForWhatIsNotWorthAWake) {
   Team team(helped);
   team.Set(std::array{SomeCpu()});
   PieceCost cost;
+  int cheap = 0;
   for (int i = 0; i < 1000; ++i) {
-    team.ForEach(10, &cost, [](std::size_t, std::size_t worker) { EXPECT_EQ(worker, 0u); });
+    // Not so for a while where the host has kept this thread waiting in the midst of a piece.
+    const bool is_cheap = cost.ns() < 20'000;
+    if (is_cheap) ++cheap;
+    team.ForEach(10, &cost, [is_cheap](std::size_t, std::size_t worker) {
+      EXPECT_TRUE(worker == 0 || !is_cheap);
+    });
   }
-  EXPECT_LT(cost.ns(), 20'000);
+  EXPECT_GT(cheap, 500);
 }
 
 TEST(Team, LeavesNoThreadBehindAndNoneAtRealTimePriority) {
@@ -93,10 +100,10 @@ TEST(Team, LeavesNoThreadBehindAndNoneAtRealTimePriority) {
     }));
     EXPECT_EQ(policy, SCHED_OTHER);
     team.Set({});
-    EXPECT_EQ(ThreadsOfThis(), before);
+    EXPECT_TRUE(ComesTrue([&] { return ThreadsOfThis() == before; }));
     team.ForEach(2, &cost, [](std::size_t, std::size_t worker) { EXPECT_EQ(worker, 0u); });
   }
-  EXPECT_EQ(ThreadsOfThis(), before);
+  EXPECT_TRUE(ComesTrue([&] { return ThreadsOfThis() == before; }));
 }
 
 class OnTwoProcessors : public EveryEngine {};
@@ -115,7 +122,8 @@ TEST_P(OnTwoProcessors, BodiesMoveTheSameToTheBit) {
   auto two = MakeDynamics(world);
   two->UseProcessors(std::array{SomeCpu()});
   std::mt19937_64 random(5);
-  const auto commands = RandomCommands(4000, 150, 2'000'000, random, Kinds::kAll);
+  // Many, for a helper may have to wait for its processor while another run has it.
+  const auto commands = RandomCommands(40'000, 150, 2'000'000, random, Kinds::kAll);
   const bool may_help = GetParam().engine != EngineKind::kOde;
   std::size_t next = 0;
   const auto go_on = [&] {
