@@ -33,9 +33,16 @@ class Coordinator {
  public:
   using Answers = std::function<void(StateLink&)>;
 
+  // It can be found by then, and has noted what it does.
   explicit Coordinator(Answers answers, const std::string& folder = "") {
+    int begun[2];
+    EXPECT_EQ(pipe(begun), 0);
     pid_ = fork();
-    if (pid_ == 0) Serve(answers, folder);
+    if (pid_ == 0) Serve(answers, folder, begun[1]);
+    close(begun[1]);
+    char told;
+    EXPECT_EQ(read(begun[0], &told, 1), 1);
+    close(begun[0]);
   }
   ~Coordinator() {
     kill(pid_, SIGKILL);
@@ -45,7 +52,6 @@ class Coordinator {
   Coordinator& operator=(const Coordinator&) = delete;
 
   pid_t pid() const { return pid_; }
-  // Once it can be found.
   FoundRun Run() const {
     for (;;) {
       for (FoundRun& run : FindRuns()) {
@@ -56,12 +62,13 @@ class Coordinator {
   }
 
  private:
-  [[noreturn]] static void Serve(const Answers& answers, const std::string& folder) {
+  [[noreturn]] static void Serve(const Answers& answers, const std::string& folder, int begun) {
     alarm(100);
     StateLink link;
     link.Open(folder);
     link.Dispatched(42, __rdtsc(), 1'500);
     link.Does(Doing::kIntegrates, __rdtsc());
+    if (write(begun, "", 1) != 1) _exit(1);
     for (pollfd asked{link.wake_fd(), POLLIN, 0};;) {
       if (poll(&asked, 1, -1) == 1) answers(link);
     }
@@ -113,16 +120,24 @@ TEST(AskForState, SaysWhatTheCoordinatorDoesThatDoesNotAnswer) {
 }
 
 TEST(AskForState, TakesALateAnswerForNobodysNext) {
-  const Coordinator coordinator([](StateLink& link) {
-    if (!link.TakeAsked()) return;
-    usleep(300'000);
-    link.Answer("late");
-    usleep(300'000);
+  int may_answer[2];
+  ASSERT_EQ(pipe(may_answer), 0);
+  const Coordinator coordinator([&](StateLink& link) {
+    char word;
+    if (link.TakeAsked() && read(may_answer[0], &word, 1) == 1) link.Answer("late");
   });
   const FoundRun run = coordinator.Run();
   EXPECT_EQ(AskForState(run, kSoonNs).text, std::nullopt);
+  // To the first question it answers while the second one waits, unless the host is busy.
+  std::thread later([&] {
+    usleep(200'000);
+    EXPECT_EQ(write(may_answer[1], "123", 3), 3);
+  });
   EXPECT_EQ(AskForState(run, kInTimeNs).text, "late");
   EXPECT_EQ(AskForState(run, kInTimeNs).text, "late");
+  later.join();
+  close(may_answer[0]);
+  close(may_answer[1]);
 }
 
 TEST(AskForState, SaysThatTheRunHasEnded) {
