@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 
 #include <cerrno>
 #include <utility>
@@ -21,6 +22,13 @@ std::optional<Datagram> Received(UdpSocket* socket) {
   return std::get<std::optional<Datagram>>(socket->Receive());
 }
 
+// One that was sent: the kernel may hand it over later.
+std::optional<Datagram> Awaited(UdpSocket* socket) {
+  pollfd readable{socket->fd(), POLLIN, 0};
+  poll(&readable, 1, 60'000);
+  return Received(socket);
+}
+
 SocketError WhyNotBound(const UdpEndpoint& endpoint) {
   const auto result = UdpSocket::Bind(endpoint);
   const auto* error = std::get_if<SocketError>(&result);
@@ -34,13 +42,16 @@ TEST(UdpSocket, CarriesDatagramsOneByOne) {
   ASSERT_FALSE(sender.SendTo(receiver.LocalEndpoint(), ""));
   ASSERT_FALSE(sender.SendTo(receiver.LocalEndpoint(), std::string(65507, 'x')));
 
-  const auto first = Received(&receiver);
+  const auto first = Awaited(&receiver);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->payload, "first");
   EXPECT_EQ(first->from.host, "127.0.0.1");
   EXPECT_EQ(first->from.port, sender.LocalEndpoint().port);
-  EXPECT_EQ(Received(&receiver)->payload, "");
-  EXPECT_EQ(Received(&receiver)->payload, std::string(65507, 'x'));
+  for (const std::string& expected : {std::string(), std::string(65507, 'x')}) {
+    const auto next = Awaited(&receiver);
+    ASSERT_TRUE(next);
+    EXPECT_EQ(next->payload, expected);
+  }
 }
 
 TEST(UdpSocket, DoesNotWait) {

@@ -8,6 +8,6 @@ namespace tcs::fuzz {
 
 // `attempt` returns what is wrong with how it went, or nothing. What came of it: nothing, that, or
 // that it crashed, or took more than `most_s` seconds of processor time.
-std::string Outcome(const std::function<std::string()>& attempt, unsigned most_s = 20);
+std::string Outcome(const std::function<std::string()>& attempt, unsigned most_s = 60);
 
 }  // namespace tcs::fuzz

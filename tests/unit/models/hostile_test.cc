@@ -39,6 +39,8 @@ struct Attack {
 
 void PrintTo(const Attack& attack, std::ostream* out) { *out << attack.name; }
 
+constexpr double kSoonS = 40;  // it takes some, and four times as many on a slow and busy host
+
 double ProcessorSeconds() {
   timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -62,7 +64,7 @@ TEST_P(HostileUrdfTest, EndsInASentenceSoon) {
   EXPECT_THAT(loaded.mistake, HasSubstr(std::string(GetParam().words)));
   EXPECT_LT(loaded.mistake.size(), 1000u);
   EXPECT_LE(loaded.warnings.size(), 60u);
-  EXPECT_LT(ProcessorSeconds() - before_s, 10);
+  EXPECT_LT(ProcessorSeconds() - before_s, kSoonS);
 #ifndef __SANITIZE_ADDRESS__  // which keeps what was freed
   EXPECT_LT(MostMemoryKb() - before_kb, 400'000);
 #else
@@ -174,7 +176,7 @@ TEST(HostileUrdf, TheLongestChainIsTakenSoon) {
   const Loaded loaded = LoadText(folder, text, {true});
   EXPECT_EQ(loaded.mistake, "");
   EXPECT_EQ(loaded.model.links.size(), 4096u);
-  EXPECT_LT(ProcessorSeconds() - before_s, 10);
+  EXPECT_LT(ProcessorSeconds() - before_s, kSoonS);
 }
 
 TEST(HostileUrdf, APipeIsNotWaitedFor) {

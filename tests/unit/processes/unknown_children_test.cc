@@ -31,7 +31,7 @@ class UnknownChildrenTest : public testing::Test {
   }
   void EndChild() {
     kill(child_, SIGKILL);
-    if (reactor_.Wait(HostDuration::Seconds(10)) > 0) reactor_.Handle({});
+    if (reactor_.Wait(HostDuration::Seconds(100)) > 0) reactor_.Handle({});
   }
 
   pid_t child_ = -1;

@@ -147,8 +147,8 @@ TEST_F(LiveRunTest, AnotherRunInTheFolderIsAnotherGeneration) {
   run.Look();
   run.Look();
   const LiveRun::Place have = run.place();
-  std::filesystem::remove(root_ / "run/bodies.csv");
-  Write("run/other", "");  // so that the file does not get the same place on the disk
+  // It keeps its place on the disk, so that the other one has another place.
+  std::filesystem::rename(root_ / "run/bodies.csv", root_ / "run/other");
   Write("run/bodies.csv", kHead + Lines(0, 3));
   for (int i = 0; i < 3; ++i) run.Look();
   const Json news = run.NewsSince(have);
