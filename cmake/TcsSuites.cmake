@@ -1,5 +1,5 @@
 # Run when a GoogleTest executable has been linked: writes what CTest reads, one test for each suite.
-#   cmake -DEXECUTABLE=bin/x_test -DFOLDER=tests/unit/x -DLABEL=unit -DFILE=x_suites.cmake -P TcsSuites.cmake
+#   cmake -DEXECUTABLE=bin/x_test -DFOLDER=tests/unit/x -DLABEL=unit -DTIMEOUT=300 -DFILE=x_suites.cmake -P TcsSuites.cmake
 cmake_policy(VERSION 3.25)
 execute_process(COMMAND "${EXECUTABLE}" --gtest_list_tests WORKING_DIRECTORY "${FOLDER}" OUTPUT_VARIABLE listed
                 TIMEOUT 60 COMMAND_ERROR_IS_FATAL ANY)
@@ -19,7 +19,7 @@ foreach(suite IN LISTS suites)
   string(REPLACE "." "" suite "${suite}")
   string(APPEND tests
     "add_test([[${suite}]] [[${EXECUTABLE}]] [[--gtest_filter=${suite}.*]])\n"
-    "set_tests_properties([[${suite}]] PROPERTIES LABELS ${LABEL} TIMEOUT 120 WORKING_DIRECTORY [[${FOLDER}]]\n"
+    "set_tests_properties([[${suite}]] PROPERTIES LABELS ${LABEL} TIMEOUT ${TIMEOUT} WORKING_DIRECTORY [[${FOLDER}]]\n"
     "  SKIP_REGULAR_EXPRESSION [==[${skipped}]==])\n")
 endforeach()
 file(WRITE "${FILE}" "${tests}")

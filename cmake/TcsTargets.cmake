@@ -98,7 +98,7 @@ function(tcs_add_gtest target)
     tcs_target_compile_quickly(${target})
   endif()
   if(ARG_CASES)
-    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 120)
+    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 600)
   else()
     tcs_register_suites(${target} ${ARG_LABEL})
   endif()
@@ -112,7 +112,7 @@ function(tcs_register_suites target label)
   add_custom_command(
     TARGET ${target} POST_BUILD BYPRODUCTS "${suites}" VERBATIM
     COMMAND "${CMAKE_COMMAND}" -D "EXECUTABLE=$<TARGET_FILE:${target}>" -D "FOLDER=${CMAKE_CURRENT_BINARY_DIR}"
-            -D "LABEL=${label}" -D "FILE=${suites}" -P "${CMAKE_SOURCE_DIR}/cmake/TcsSuites.cmake")
+            -D "LABEL=${label}" -D "TIMEOUT=300" -D "FILE=${suites}" -P "${CMAKE_SOURCE_DIR}/cmake/TcsSuites.cmake")
   file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake"
        "if(EXISTS \"${suites}\")\n  include(\"${suites}\")\nelse()\n  add_test(${target}_NOT_BUILT ${target}_NOT_BUILT)\n"
        "  set_tests_properties(${target}_NOT_BUILT PROPERTIES LABELS ${label})\nendif()\n")
