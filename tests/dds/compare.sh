@@ -64,4 +64,9 @@ else
   agrees "$variant, one core" env TCS_DDS_SHARED_CORE=1 "$build/bin/tcsim" exec --accounting fixed \
     "${dds[@]}" -- "${program[@]}"
   agrees_on_two_robots
+  # When things happen, to the millisecond.
+  if [[ $name == timed_* || $name == full_reader || $name == stopped_reader ]]; then
+    agrees "$variant, two cores, set costs" env TCS_DDS_SET_COSTS=1 "$build/bin/tcsim" exec --cores 2 --accounting fixed \
+      "${dds[@]}" -- "${program[@]}"
+  fi
 fi
