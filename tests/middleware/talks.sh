@@ -33,11 +33,15 @@ fi
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
-# judged FILE LEAST_US MOST_US: what the receiver has said.
+# judged FILE LEAST_US MOST_US FEW: what the receiver has said. What a message costs once is the host's where it is measured:
+# then FEW may take 20 ms more.
 judged() {
-  awk -v file="$1" -v least="$2" -v most="$3" -v count="$count" '
+  awk -v least="$2" -v most="$3" -v few="$4" -v count="$count" '
     $1 != NR - 1 { printf "message %d is the %dth that was seen\n", $1, NR; bad = 1 }
-    $2 < least * 1000 || $2 > most * 1000 { printf "message %d took %d ns\n", $1, $2; bad = 1 }
+    $2 < least * 1000 || $2 > (most + 20000) * 1000 || $2 > most * 1000 && ++late > few {
+      printf "message %d took %d ns, %d are late\n", $1, $2, late
+      bad = 1
+    }
     END { if (NR != count) { printf "%d of %d messages were seen\n", NR, count; bad = 1 }
           exit bad }' "$1"
 }
@@ -49,16 +53,17 @@ receiver=$!
 wait $receiver
 END
 
-# here HOW LEAST_US MOST_US COMMAND...: both on one computer, which nobody else has.
+# here HOW LEAST_US MOST_US FEW COMMAND...: both on one computer, which nobody else has. Other runs may have the processors
+# first.
 here() {
   local status=0
-  timeout 60 "$build/bin/in_own_network" "${@:4}" bash "$out/both.sh" "$here_only" "$count" "${program[@]}" >"$out/$1" 2>"$out/said" ||
-    status=$?
-  ((status == 0)) && judged "$out/$1" "$2" "$3" && return
+  timeout 250 "$build/bin/in_own_network" "${@:5}" bash "$out/both.sh" "$here_only" "$count" "${program[@]}" \
+    >"$out/$1" 2>"$out/said" || status=$?
+  ((status == 0)) && judged "$out/$1" "$2" "$3" "$4" && return
   complain "$1: status $status: $(cat "$out/said")"
 }
 
-# apart ACCOUNTING FOLDER MOST_US: on two robots, 5 ms from each other.
+# apart ACCOUNTING FOLDER MOST_US FEW: on two robots, 5 ms from each other.
 apart() {
   local status=0 command
   command=$(printf '"%s", ' "${program[@]}")
@@ -69,26 +74,26 @@ robots:
   receiver: {clients: {program: {command: [$command receive, "$at_receiver", "$count"]}}}
   sender: {clients: {program: {command: [$command send, "$at_sender", "$count"]}}}
 END
-  timeout 60 "$build/bin/tcsim" run "$out/scenario.yaml" --accounting "$1" --out "$out/$2" >"$out/said" 2>&1 || status=$?
-  ((status == 0)) && judged "$out/$2/receiver-program.out.log" 5000 "$3" && return
+  timeout 250 "$build/bin/tcsim" run "$out/scenario.yaml" --accounting "$1" --out "$out/$2" >"$out/said" 2>&1 || status=$?
+  ((status == 0)) && judged "$out/$2/receiver-program.out.log" 5000 "$3" "$4" && return
   complain "$2: status $status: $(cat "$out/said" "$out/$2"/*.err.log)"
 }
 
 case $variant in
   native)
     # In real time, on a machine that others use, too: how late messages are says nothing.
-    steadily "$build" here natively 0 30000000
+    steadily "$build" here natively 0 30000000 0
     ;;
   exec)
-    here measured 0 2000 "$build/bin/tcsim" exec --
-    for run in first second; do here $run 0 500 "$build/bin/tcsim" exec --accounting fixed --; done
+    here measured 0 2000 5 "$build/bin/tcsim" exec --
+    for run in first second; do here $run 0 500 0 "$build/bin/tcsim" exec --accounting fixed --; done
     $repeats || exit 0
     cmp "$out/first" "$out/second" || complain "fixed runs differ"
     ;;
   network)
     "$here/../scenario/can_have_networks.sh" || exit 77
-    apart measured measured 7000
-    for run in first second; do apart fixed $run 5500; done
+    apart measured measured 7000 5
+    for run in first second; do apart fixed $run 5500 0; done
     $repeats || exit 0
     for file in trace.json dispatches.csv receiver-program.out.log; do
       cmp "$out/first/$file" "$out/second/$file" || complain "$file of fixed runs differs"
