@@ -15,7 +15,8 @@ struct ChildResult {
   double cpu_seconds = 0;  // its own and those of the programs that it started and waited for
 };
 
-inline constexpr std::chrono::seconds kLongestLife{30};
+// Other runs of tcsim may have the processors, and are waited for.
+inline constexpr std::chrono::seconds kLongestLife{300};
 
 // The program dies with its caller, and after that many real seconds at the latest. What it says on
 // stderr is passed on.

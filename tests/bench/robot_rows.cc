@@ -74,8 +74,9 @@ std::optional<RunCosts> RunOnce(const SwarmCase& swarm, double virtual_s) {
   if (!run) return std::nullopt;
   const auto commands = run->summary().at("commands").get<double>();
   const double ticks = swarm.drones * swarm.rate_hz * virtual_s;
-  // Each tick of a rate loop sends a command; the first ones come before the programs have begun.
-  if (commands < 0.5 * ticks) {
+  // Each tick of a rate loop sends a command; the first ones come before the programs have begun,
+  // which takes a slow host long.
+  if (commands < 0.2 * ticks) {
     fmt::print(stderr, "tcs_bench: robots: {} commands in {} ticks\n", commands, ticks);
     return std::nullopt;
   }
