@@ -25,7 +25,7 @@ channels:
   fixed: {type: dds, sensors: {kind: fixed_transforms, model: rover}}
 YAML
 for accounting in measured fixed; do
-  timeout 100 "$tcsim" run "$out/s.yaml" --accounting "$accounting" --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said" "$out"/run/*.log)"
+  timeout 300 "$tcsim" run "$out/s.yaml" --accounting "$accounting" --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said" "$out"/run/*.log)"
   for client in frames sim_time; do
     python3 - "$out/run/rover-$client.out.log" <<'PY' || fail "$accounting, $client: $(cat "$out"/run/*.log)"
 import re, sys

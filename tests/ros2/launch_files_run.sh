@@ -34,5 +34,5 @@ import re, sys
 rates = [float(rate) for rate in re.findall(r"average rate: (\S+)", open(sys.argv[1]).read())]
 assert rates and all(abs(rate - 20) < 0.1 for rate in rates), rates
 PY
-(cd "$out" && timeout 100 ros2 launch tcs hover.launch.py out:="$out/launched") >"$out/said" 2>&1 || fail "hover.launch.py: $(cat "$out/said")"
+(cd "$out" && timeout 300 ros2 launch tcs hover.launch.py out:="$out/launched") >"$out/said" 2>&1 || fail "hover.launch.py: $(cat "$out/said")"
 grep -q 'x real time' "$out/said" && [[ -s $out/launched/summary.json ]] || fail "hover.launch.py: $(cat "$out/said")"

@@ -27,7 +27,7 @@ ends_in() {  # GRACE SCENARIO DDS OPTIONS...
   local grace=$1 scenario=$2 dds=$3
   shift 3
   sed "s/\]}/], dds: $dds, stop_grace: $grace}/" "$out/$scenario" >"$out/run.yaml"
-  timeout 100 "$tcsim" run "$out/run.yaml" "$@" --out "$out/run" >"$out/said" 2>&1 || fail "$scenario, $dds, $*: $(cat "$out/said" "$out"/run/*.log)"
+  timeout 300 "$tcsim" run "$out/run.yaml" "$@" --out "$out/run" >"$out/said" 2>&1 || fail "$scenario, $dds, $*: $(cat "$out/said" "$out"/run/*.log)"
   ! grep 'was killed' "$out/said" || fail "$scenario, $dds, $*: not within $grace"
 }
 for accounting in measured fixed; do

@@ -30,7 +30,7 @@ SH
 under_tcs() {  # WHAT COMMAND...
   for accounting in $accountings; do
     for dds in $ways; do
-      timeout 120 "$tcsim" exec --cores 2 --accounting "$accounting" --dds "$dds" -- bash "${@:2}" >"$out/said" 2>"$out/errors" ||
+      timeout 300 "$tcsim" exec --cores 2 --accounting "$accounting" --dds "$dds" -- bash "${@:2}" >"$out/said" 2>"$out/errors" ||
         fail "$*, $accounting, $dds: $(cat "$out/said" "$out/errors")"
       "$1" || fail "$*, $accounting, $dds: $(cat "$out/said" "$out/errors")"
     done
