@@ -109,12 +109,13 @@ for _ in range(answers):
     print(f"{(time.monotonic() - asked) * 1e3:.3f} {looks}")
 PY
 cat >ticker.py <<'PY'
-import time
+import os, time
 begun = due = time.monotonic()
 for _ in range(500):
     due += 0.001
     time.sleep(max(0, due - time.monotonic()))
-print(f"{time.monotonic() - begun:.3f}")
+print(f"{time.monotonic() - begun:.3f}", flush=True)
+os._exit(0)  # to end Python computes for 20 ms, in which the client does not look
 PY
 # Runs have the processors, and the server is to be as quick as one on another computer.
 serve() {  # SECONDS
@@ -123,13 +124,15 @@ serve() {  # SECONDS
   for _ in $(seq 2000); do [[ -e ready ]] && return; sleep 0.05; done
   fail "the server does not begin"
 }
-# The least of the answers, for what answers is not of the run, and a busy host may keep it waiting.
+# The least of the answers, for what answers is not of the run, and a busy host may keep it waiting. But for one: a program
+# whose processor the host has taken unseen has a clock that is ahead until it has computed as much, which an answer that it
+# waits for then seems shorter by.
 is_right() {  # WHO, a file with its answers, seconds of its looks
   python3 - "$@" <<'PY' || fail "$1: $(cat "$2")"
 import sys
 answers = [line.split() for line in open(sys.argv[2])]
 served = min(float(line) for line in open("served"))
-least = min(float(took) for took, _ in answers)
+least = sorted(float(took) for took, _ in answers)[1]
 assert served - 0.5 <= least <= 1.05 * served + 1, f"an answer took {least} ms at least, and the server {served} ms"
 period = float(sys.argv[3]) * 1e3
 for took, looks in answers:
