@@ -2,11 +2,13 @@
 #
 # steadily BUILD COMMAND...: the time of COMMAND is real time, which a loaded machine bends. Where it fails and the machine has
 # kept a thread waiting for longer than 1 ms meanwhile, the failure says nothing of COMMAND, which is run again, five times
-# in all. A failure on a machine that did not stall stands.
+# in all. A failure on a machine that did not stall stands. Others may have the processors for seconds: the next time is
+# further and further away, so that not all five are in one such while.
 steadily() {
-  local build=$1 status ready stall
+  local build=$1 status ready stall later
   shift
-  for _ in 1 2 3 4 5; do
+  for later in 0 1 3 9 20; do
+    sleep "$later"
     coproc stall_watch { exec "$build/bin/stall_watch"; }
     local watch=$stall_watch_PID from=${stall_watch[0]}
     read -r ready <&"$from"
