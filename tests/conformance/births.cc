@@ -223,6 +223,7 @@ void ChildrenThatWake() {
   EXPECT(pid >= 0, "%s", strerror(errno));
   if (pid == 0) {
     usleep(10'000);
+    NativelyUntil([] { return Sleeps(getppid()); });
     shared->word = 1;
     syscall(SYS_futex, &shared->word, FUTEX_WAKE, 1, nullptr, nullptr, 0);
     SleepRaw(10 * kMs);
@@ -231,9 +232,9 @@ void ChildrenThatWake() {
   const timespec most{5, 0};
   EXPECT(syscall(SYS_futex, &shared->word, FUTEX_WAIT, 0, &most, nullptr, 0) == 0, "%s",
          strerror(errno));
-  ExpectPassed(start, 10 * kMs, "a child that wakes");
+  ExpectPassed(start, 10 * kMs, "a child that wakes", MostOfChildren());
   ExpectEnd(pid, 7, "a child that wakes");
-  ExpectPassed(start, 20 * kMs, "its end");
+  ExpectPassed(start, 20 * kMs, "its end", MostOfChildren());
 }
 
 void ChildrenWithDescriptors() {
@@ -242,13 +243,13 @@ void ChildrenWithDescriptors() {
   const pid_t pid = ByClone3(CLONE_PIDFD, &pidfd);
   EXPECT(pid >= 0, "%s", strerror(errno));
   if (pid == 0) {
-    if (g_mode != Mode::kNative && Now() - start > 5 * kMs) _exit(1);
+    if (g_mode != Mode::kNative && Now() - start > MostOfChildren() / 2) _exit(1);
     usleep(300'000);
     _exit(2);
   }
   pollfd end{pidfd, POLLIN, 0};
   EXPECT(poll(&end, 1, 30'000) == 1, "no end");
-  ExpectPassed(start, 300 * kMs, "a pidfd");
+  ExpectPassed(start, 300 * kMs, "a pidfd", MostOfChildren());
   ExpectEnd(pid, 2, "a pidfd");
   close(pidfd);
 }
@@ -297,9 +298,10 @@ void OfAllKinds() {
     EXPECT(pid > 0, "%s: %s", kind.name, strerror(errno));
     const std::int64_t back = Now() - start;
     if (kind.waits) EXPECT(back >= 300 * kMs, "%s: back after %lld ns", kind.name, (long long)back);
-    if (!kind.waits && g_mode != Mode::kNative) EXPECT(back < 50 * kMs, "%s: waited", kind.name);
+    if (!kind.waits && g_mode != Mode::kNative) EXPECT(back < 100 * kMs, "%s: waited", kind.name);
     ExpectEnd(pid, kind.code, kind.name);
-    ExpectSoonAfter(start, 300 * kMs, kind.name, 40 * kMs);
+    // What a program's start costs is the host's, too.
+    ExpectSoonAfter(start, 300 * kMs, kind.name, (g_mode == Mode::kMeasured ? 200 : 40) * kMs);
   });
 }
 

@@ -27,10 +27,9 @@ void WakesAfterTheDelay(const char* what, Child child, Parent parent) {
   parent();
   const std::int64_t passed = Now() - start;
   EXPECT(passed >= kChildDelay, "%s woke after %lld ns", what, (long long)passed);
-  // Where it is measured, what a child costs on a busy host is the host's.
-  const std::int64_t most = g_mode == Mode::kFixed ? 10 * kMs : 50 * kMs;
   if (g_mode != Mode::kNative) {
-    EXPECT(passed < kChildDelay + most, "%s woke after %lld ns", what, (long long)passed);
+    EXPECT(passed < kChildDelay + MostOfChildren(), "%s woke after %lld ns", what,
+           (long long)passed);
   }
   int status = 0;
   EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "%s: child status %x", what, status);

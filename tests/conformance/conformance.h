@@ -64,10 +64,14 @@ inline void ExpectWaited(std::int64_t start, std::int64_t wanted_ns, int calls, 
   }
 }
 
+// The most that a child's start costs it and its parent, and its end. Where it is measured that is
+// the host's: 2 ms on an idle one, 12 were seen on a busy one.
+inline std::int64_t MostOfChildren() { return (g_mode == Mode::kMeasured ? 50 : 10) * kMs; }
+
 // The same where nobody counts the calls on the way, a child's start among them: under tcs late by
 // less than `slack_ns`.
 inline void ExpectSoonAfter(std::int64_t start, std::int64_t wanted_ns, const char* what,
-                            std::int64_t slack_ns = 10 * kMs) {
+                            std::int64_t slack_ns = MostOfChildren()) {
   const std::int64_t passed = Now() - start;
   EXPECT(passed >= wanted_ns, "%s took %lld ns, which is early", what, (long long)passed);
   if (g_mode != Mode::kNative) {
@@ -76,9 +80,11 @@ inline void ExpectSoonAfter(std::int64_t start, std::int64_t wanted_ns, const ch
 }
 
 // The same where several threads make calls on the way, a few dozen at most, or compute, each up to
-// its turn's end.
-inline void ExpectPassed(std::int64_t start, std::int64_t wanted_ns, const char* what) {
-  ExpectSoonAfter(start, wanted_ns, what, g_mode == Mode::kFixed ? 60 * kCallNs : 6 * kMs);
+// its turn's end. Where it is measured late by less than `measured_slack_ns`.
+inline void ExpectPassed(std::int64_t start, std::int64_t wanted_ns, const char* what,
+                         std::int64_t measured_slack_ns = 10 * kMs) {
+  ExpectSoonAfter(start, wanted_ns, what,
+                  g_mode == Mode::kFixed ? 60 * kCallNs : measured_slack_ns);
 }
 
 // Sets the mode, and proves that the shim engaged: an hour passes at once, or the test runs into

@@ -184,7 +184,9 @@ int ReadInherited(char** argv) {
     g_mode = strcmp(argv[1], "fixed") == 0 ? Mode::kFixed : Mode::kMeasured;
   }
   EXPECT(Expirations(atoi(argv[3])) == 1, "inherited");
-  ExpectSoonAfter(atoll(argv[4]), 59 * kMs, "an inherited timer", 20 * kMs);
+  // What a program's start costs is the host's, and may be more than the timer's time.
+  ExpectSoonAfter(atoll(argv[4]), 59 * kMs, "an inherited timer",
+                  (g_mode == Mode::kMeasured ? 300 : 20) * kMs);
   return 0;
 }
 

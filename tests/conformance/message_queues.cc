@@ -127,8 +127,8 @@ void Notification(mqd_t queue) {
   EXPECT(g_notified_ns - start >= conformance::kChildDelay, "notified after %lld ns",
          (long long)(g_notified_ns - start));
   if (g_mode != Mode::kNative) {
-    EXPECT(g_notified_ns - start < conformance::kChildDelay + 10 * kMs, "notified after %lld ns",
-           (long long)(g_notified_ns - start));
+    EXPECT(g_notified_ns - start < conformance::kChildDelay + MostOfChildren(),
+           "notified after %lld ns", (long long)(g_notified_ns - start));
   }
   EXPECT(Receive(queue) == 1, "receive: %s", strerror(errno));
 }

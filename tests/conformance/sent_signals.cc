@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <semaphore.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -13,12 +14,18 @@
 #include <vector>
 
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 using namespace conformance;
 
 namespace {
 
 constexpr std::int64_t kDelay = 30 * kMs;
+
+void SleepUntil(std::int64_t until) {
+  const timespec t = ToTimespec(until);
+  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
+}
 
 std::int64_t g_handled_ns = 0;
 int g_count = 0, g_value = 0;
@@ -47,6 +54,7 @@ void EndsTheWait(const char* what, const std::function<long()>& wait) {
   const pid_t child = fork();
   if (child == 0) {
     usleep(kDelay / 1000);
+    NativelyUntil([=] { return Sleeps(parent); });
     const std::int64_t sent = Now();
     kill(parent, SIGUSR1);
     _exit(write(fds[1], &sent, sizeof sent) == sizeof sent ? 0 : 1);
@@ -62,7 +70,7 @@ void EndsTheWait(const char* what, const std::function<long()>& wait) {
   EXPECT(sent <= g_handled_ns && g_handled_ns <= ended, "%s: handled %lld ns early", what,
          (long long)(sent - g_handled_ns));
   if (g_mode != Mode::kNative) {
-    const std::int64_t slack_ns = g_steps > 0 ? 500 * kMs : 5 * kMs;
+    const std::int64_t slack_ns = g_steps > 0 ? 500 * kMs : MostOfChildren();
     EXPECT(ended - start < kDelay + slack_ns, "%s: ended after %lld ns", what,
            (long long)(ended - start));
   }
@@ -114,9 +122,10 @@ void Restarts() {
     const std::int64_t start = Now();
     const pid_t child = fork();
     if (child == 0) {
-      usleep(kDelay / 1000);
+      SleepUntil(start + kDelay);
+      NativelyUntil([=] { return Sleeps(parent); });
       kill(parent, SIGUSR1);
-      usleep(kDelay / 1000);
+      SleepUntil(start + 2 * kDelay);
       if (reads) _exit(write(fds[1], "x", 1) == 1 ? 0 : 1);
       _exit(sem_post(semaphore));
     }
@@ -128,7 +137,7 @@ void Restarts() {
     EXPECT(g_handled_ns - start >= kDelay && passed >= 2 * kDelay, "handled after %lld ns of %lld",
            (long long)(g_handled_ns - start), (long long)passed);
     if (g_mode != Mode::kNative) {
-      EXPECT(g_handled_ns - start < kDelay + 5 * kMs && passed < 2 * kDelay + 5 * kMs,
+      EXPECT(g_handled_ns - start < kDelay + 15 * kMs && passed < 2 * kDelay + 15 * kMs,
              "handled after %lld ns of %lld", (long long)(g_handled_ns - start), (long long)passed);
     }
     EXPECT(waitpid(child, nullptr, 0) == child, "waitpid");
@@ -142,6 +151,7 @@ void Values() {
   sigaddset(&blocked, SIGRTMIN);
   sigprocmask(SIG_BLOCK, &blocked, &before);
   const pid_t parent = getpid();
+  const std::int64_t start = Now();
   const pid_t child = fork();
   if (child == 0) {
     for (int i = 1; i <= 3; ++i) {
@@ -150,10 +160,9 @@ void Values() {
     }
     _exit(0);
   }
-  const std::int64_t start = Now();
   for (int i = 1; i <= 3; ++i) {
     EXPECT(sigsuspend(&before) == -1 && g_value == i, "value %d, not %d", g_value, i);
-    ExpectSoonAfter(start, i * 10 * kMs - kMs, "a value", 15 * kMs);
+    ExpectSoonAfter(start, i * 10 * kMs, "a value", 5 * kMs + MostOfChildren());
   }
   EXPECT(waitpid(child, nullptr, 0) == child, "waitpid");
   sigprocmask(SIG_SETMASK, &before, nullptr);
@@ -185,12 +194,13 @@ void EndsOfProcesses() {
   const pid_t killer = fork();
   if (killer == 0) {
     usleep(kDelay / 1000);
+    NativelyUntil([] { return Sleeps(getppid()); });
     EXPECT(kill(child, SIGTERM) == 0, "kill: %s", strerror(errno));
     sleep(1000);
     _exit(0);
   }
   EXPECT(sleep(100) > 0 && g_count == 1, "SIGCHLD did not end the sleep: %d", g_count);
-  ExpectSoonAfter(start, kDelay, "the end of a child", 5 * kMs);
+  ExpectSoonAfter(start, kDelay, "the end of a child");
   WasTerminated(child);
   sigset_t blocked, before;
   sigemptyset(&blocked);
@@ -199,7 +209,7 @@ void EndsOfProcesses() {
   start = Now();
   EXPECT(kill(killer, SIGTERM) == 0, "kill: %s", strerror(errno));
   EXPECT(sigsuspend(&before) == -1 && g_count == 2, "%d handlers ran", g_count);
-  ExpectSoonAfter(start, 0, "the end of another child", 5 * kMs);
+  ExpectSoonAfter(start, 0, "the end of another child");
   WasTerminated(killer);
   sigprocmask(SIG_SETMASK, &before, nullptr);
   signal(SIGCHLD, SIG_DFL);
@@ -219,6 +229,12 @@ void Stops() {
   char c;
   EXPECT(read(fds[0], &c, 1) == 1, "read");
   kill(child, SIGSTOP);
+  if (g_mode == Mode::kNative) {  // it may have written more before it was seen and stopped
+    int status = 0, more = 0;
+    EXPECT(waitpid(child, &status, WUNTRACED) == child && WIFSTOPPED(status), "%x", status);
+    EXPECT(ioctl(fds[0], FIONREAD, &more) == 0, "FIONREAD");
+    for (; more > 0; --more) EXPECT(read(fds[0], &c, 1) == 1, "read");
+  }
   const std::int64_t start = Now();
   usleep(50'000);
   kill(child, SIGCONT);
@@ -232,10 +248,12 @@ void Stops() {
 std::atomic<pid_t> g_first_tid{0};
 
 // Which thread of `threads` ends its sleep at once, -1 if none does within 30 ms. Thread `taker`
-// does not block SIGUSR2; the others do. `waiter` waits for it by sigwait.
+// does not block SIGUSR2; the others do. `waiter` waits for it by sigwait. Natively all is five
+// times as long: a busy machine is late.
 int WhoTakes(int taker, int waiter,
              const std::function<void(const std::vector<pthread_t>&)>& send) {
   constexpr int kThreads = 4;
+  const int times = g_mode == Mode::kNative ? 5 : 1;
   std::atomic<int> who{-1};
   std::atomic<bool> sent{false};
   std::vector<std::thread> threads;
@@ -246,19 +264,19 @@ int WhoTakes(int taker, int waiter,
       sigemptyset(&set);
       sigaddset(&set, SIGUSR2);
       pthread_sigmask(i == taker ? SIG_UNBLOCK : SIG_BLOCK, &set, nullptr);
-      const timespec long_enough{0, 80 * kMs};
+      const timespec long_enough = ToTimespec(times * 80 * kMs);
       const int result = i == waiter ? sigtimedwait(&set, nullptr, &long_enough)
                                      : nanosleep(&long_enough, nullptr);
       if (i == waiter ? result == SIGUSR2 : result == -1) who = i;
       EXPECT(sent, "a wait of 80 ms was over in 20");
     });
   }
-  usleep(20'000);
+  usleep(static_cast<unsigned>(times) * 20'000);
   sent = true;
   std::vector<pthread_t> handles;
   for (std::thread& thread : threads) handles.push_back(thread.native_handle());
   send(handles);
-  usleep(30'000);
+  usleep(static_cast<unsigned>(times) * 30'000);
   const int taken_by = who;
   for (std::thread& thread : threads) thread.join();
   return taken_by;

@@ -30,7 +30,7 @@ void ExpectPassed(std::int64_t start, std::int64_t wanted, const char* what) {
   const std::int64_t passed = Now() - start;
   EXPECT(passed >= wanted, "%s took %lld ns", what, (long long)passed);
   if (g_mode == Mode::kMeasured)
-    EXPECT(passed < wanted + 3 * kMs, "%s: %lld ns", what, (long long)passed);
+    EXPECT(passed < wanted + 5 * kMs, "%s: %lld ns", what, (long long)passed);
   if (g_mode == Mode::kFixed)
     EXPECT(passed <= wanted + 10 * kCallNs, "%s: %lld ns", what, (long long)passed);
 }
@@ -103,13 +103,15 @@ void Interrupted() {
   event.sigev_signo = SIGVTALRM;
   timer_t timer;
   EXPECT(timer_create(CLOCK_REALTIME, &event, &timer) == 0, "timer_create");
-  const itimerspec spec{{0, 0}, ToTimespec(30 * kMs)};
+  // Natively a busy machine may be late for the wait.
+  const std::int64_t soon = (g_mode == Mode::kNative ? 300 : 30) * kMs;
+  const itimerspec spec{{0, 0}, ToTimespec(soon)};
   std::int64_t start = Now();
   timer_settime(timer, 0, &spec, nullptr);
   timespec timeout = ToTimespec(10 * kSecond);
   EXPECT(sigtimedwait(&set, nullptr, &timeout) == -1 && errno == EINTR, "sigtimedwait: %s",
          strerror(errno));
-  ExpectPassed(start, 30 * kMs, "sigtimedwait until a handler");
+  ExpectPassed(start, soon, "sigtimedwait until a handler");
   EXPECT(g_handled == 1, "%d handlers ran", int(g_handled));
   timer_settime(timer, 0, &spec, nullptr);
   EXPECT(sigwaitinfo(&set, nullptr) == -1 && errno == EINTR, "sigwaitinfo");
@@ -117,10 +119,10 @@ void Interrupted() {
   start = Now();
   timer_settime(timer, 0, &spec, nullptr);
   const sigset_t alarms = SetOf({SIGALRM});
-  AlarmIn(60 * kMs);
+  AlarmIn(2 * soon);
   int found = 0;
   EXPECT(sigwait(&alarms, &found) == 0 && found == SIGALRM, "sigwait");
-  ExpectPassed(start, 60 * kMs, "sigwait over a handler");
+  ExpectPassed(start, 2 * soon, "sigwait over a handler");
   EXPECT(g_handled == 3, "%d handlers ran", int(g_handled));
   timer_delete(timer);
 }
@@ -146,7 +148,8 @@ void FromProcesses() {
     const std::int64_t passed = Now() - start;
     EXPECT(passed >= i * 10 * kMs, "round %d after %lld ns", i, (long long)passed);
     if (g_mode != Mode::kNative)
-      EXPECT(passed < i * 11 * kMs + 2 * kMs, "round %d after %lld ns", i, (long long)passed);
+      EXPECT(passed < i * 11 * kMs + MostOfChildren(), "round %d after %lld ns", i,
+             (long long)passed);
     kill(child, SIGUSR2);
   }
   int status = -1;
@@ -168,7 +171,9 @@ void FromProcesses() {
          "SIGCHLD of %d", info.si_pid);
   const std::int64_t passed = Now() - start;
   EXPECT(passed >= 50 * kMs, "after %lld ns", (long long)passed);
-  if (g_mode != Mode::kNative) EXPECT(passed < 55 * kMs, "after %lld ns", (long long)passed);
+  if (g_mode != Mode::kNative) {
+    EXPECT(passed < 50 * kMs + MostOfChildren(), "after %lld ns", (long long)passed);
+  }
   waitpid(sleeper, nullptr, 0);
 
   // Killed while it sleeps, it is gone at the killer's time.
@@ -180,7 +185,8 @@ void FromProcesses() {
   start = Now();
   kill(victim, SIGTERM);
   EXPECT(waitpid(victim, &status, 0) == victim && WTERMSIG(status) == SIGTERM, "%x", status);
-  if (g_mode != Mode::kNative) ExpectPassed(start, 0, "killing");
+  if (g_mode == Mode::kFixed) ExpectPassed(start, 0, "killing");
+  ExpectSoonAfter(start, 0, "killing");
 }
 
 // A program's one thread for signals.
@@ -203,7 +209,7 @@ void ExpectReceived(int count, std::int64_t sent, const char* what) {
   NativelyUntil([=] { return g_received >= count; });
   EXPECT(g_received == count, "%s: %d were received", what, g_received.load());
   if (g_mode == Mode::kMeasured)
-    EXPECT(g_received_at - sent < kMs, "%s: %lld ns later", what,
+    EXPECT(g_received_at - sent < 4 * kMs, "%s: %lld ns later", what,
            (long long)(g_received_at - sent));
   if (g_mode == Mode::kFixed)
     EXPECT(g_received_at - sent <= 5 * kCallNs, "%s: %lld ns later", what,
@@ -235,7 +241,10 @@ void FromThreads() {
 std::int64_t g_handled_at = 0;
 void NoteTime(int) { g_handled_at = Now(); }
 
+std::atomic<pid_t> g_sleeper{0};
+
 void* SleepLong(void*) {
+  g_sleeper = gettid();
   const timespec wanted = ToTimespec(3600 * kSecond);
   timespec left{};
   EXPECT(nanosleep(&wanted, &left) == -1 && errno == EINTR, "nanosleep");
@@ -247,12 +256,14 @@ void ToAHandler() {
   pthread_t thread;
   EXPECT(pthread_create(&thread, nullptr, SleepLong, nullptr) == 0, "pthread_create");
   usleep(30'000);
+  NativelyUntil([] { return g_sleeper != 0 && Sleeps(g_sleeper); });
   const std::int64_t sent = Now();
   EXPECT(pthread_kill(thread, SIGRTMIN + 6) == 0, "pthread_kill");
   pthread_join(thread, nullptr);
   EXPECT(g_handled_at >= sent, "handled %lld ns before", (long long)(sent - g_handled_at));
   if (g_mode != Mode::kNative)
-    EXPECT(g_handled_at - sent < kMs, "%lld ns later", (long long)(g_handled_at - sent));
+    EXPECT(g_handled_at - sent < (g_mode == Mode::kFixed ? 1 : 5) * kMs, "%lld ns later",
+           (long long)(g_handled_at - sent));
 }
 
 }  // namespace

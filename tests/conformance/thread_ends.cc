@@ -5,7 +5,10 @@
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
+#include <atomic>
+
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 namespace {
 
@@ -43,7 +46,8 @@ void DestructorsTakeTime() {
   EXPECT(g_destroyed_ns - start >= 60 * kMs, "destructors took %lld ns",
          (long long)(g_destroyed_ns - start));
   EXPECT(Now() >= g_destroyed_ns, "joined before its end");
-  if (g_mode != Mode::kNative) EXPECT(Now() - start < 65 * kMs, "joined late");
+  const std::int64_t most = (g_mode == Mode::kFixed ? 65 : 80) * kMs;
+  if (g_mode != Mode::kNative) EXPECT(Now() - start < most, "joined late");
 }
 
 // A thread waits in `wait` for what never comes, and is cancelled after 40 ms.
@@ -70,7 +74,8 @@ void Cancelled(const char* what, Wait wait) {
   EXPECT(result == PTHREAD_CANCELED, "%s was not cancelled", what);
   const std::int64_t after = g_cleaned_ns - arguments.start;
   EXPECT(after >= 40 * kMs, "%s: cleaned up %lld ns after its start", what, (long long)after);
-  if (g_mode != Mode::kNative) EXPECT(after < 45 * kMs, "%s: %lld ns", what, (long long)after);
+  const std::int64_t most = (g_mode == Mode::kFixed ? 45 : 60) * kMs;
+  if (g_mode != Mode::kNative) EXPECT(after < most, "%s: %lld ns", what, (long long)after);
 }
 
 void WaitsAreCancelled() {
@@ -117,12 +122,13 @@ void MainEndsFirst() {
   }
   const int status = StatusOf(child);
   EXPECT(WIFEXITED(status) && WEXITSTATUS(status) == 7, "status %x", status);
-  ExpectSoonAfter(start, 50 * kMs, "the end", 20 * kMs);
+  ExpectSoonAfter(start, 50 * kMs, "the end", 10 * kMs + MostOfChildren());
 }
 
 // From the main thread, and from another one.
 void ExecEndsThem() {
   for (const bool from_main : {true, false}) {
+    const std::int64_t start = Now();
     const pid_t child = fork();
     if (child == 0) {
       static bool from_thread;
@@ -144,26 +150,27 @@ void ExecEndsThem() {
       if (from_main) execl("/bin/sh", "sh", "-c", "sleep 1; exit 5", nullptr);
       pthread_join(threads[0], nullptr);
     }
-    const std::int64_t start = Now();
     const int status = StatusOf(child);
     EXPECT(WIFEXITED(status) && WEXITSTATUS(status) == 5, "status %x", status);
-    ExpectSoonAfter(start, kSecond, "a shell", 200 * kMs);
+    // What the start of two programs costs is the host's.
+    ExpectSoonAfter(start, kSecond, "a shell", (g_mode == Mode::kMeasured ? 500 : 200) * kMs);
   }
 }
 
 void EndsWithoutAWord() {
   pthread_t thread;
-  std::int64_t done = 0;
+  static std::atomic<int> done{0};
   pthread_create(
       &thread, nullptr,
       [](void* raw) -> void* {
         usleep(5'000);
-        *static_cast<std::int64_t*>(raw) = 1;
+        *static_cast<std::atomic<int>*>(raw) = 1;
         syscall(SYS_exit, 0);
         return nullptr;
       },
       &done);
   usleep(20'000);
+  NativelyUntil([] { return done == 1; });
   EXPECT(done == 1, "the thread did not run");
 }
 
