@@ -130,7 +130,7 @@ void ServedInOrder(const Kind& kind) {
     if (children[i] != 0) continue;
     close(fd);
     const int own = Open();
-    SleepUntil(start + (i + 1) * 10 * kMs);
+    SleepUntil(start + (i + 1) * 25 * kMs);  // further apart than what a child's start may cost
     order.Comes(i);
     EXPECT(kind.lock(own) == 0, "%s", kind.name);
     ExpectPassed(start, (100 + i * 20) * kMs, kind.name);
