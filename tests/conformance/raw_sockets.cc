@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 namespace {
 
@@ -171,6 +172,7 @@ void Interrupted(int flags, bool restarts) {
   const pid_t pid = fork();
   if (pid == 0) {
     usleep(50'000);
+    NativelyUntil([=] { return Sleeps(parent); });
     kill(parent, SIGUSR1);
     usleep(50'000);
     _exit(write(pair[1], "abc", 3) == 3 ? 0 : 1);
