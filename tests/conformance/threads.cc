@@ -24,7 +24,9 @@ void ExpectPassed(std::int64_t start, std::int64_t wanted, const char* what) {
   const std::int64_t passed = Now() - start;
   EXPECT(passed >= wanted, "%s took %lld ns, which is early", what, (long long)passed);
   if (g_mode != Mode::kNative) {
-    EXPECT(passed < wanted + 2 * kMs, "%s took %lld ns", what, (long long)passed);
+    // Where it is measured, what the making of five threads costs is the host's.
+    EXPECT(passed < wanted + (g_mode == Mode::kFixed ? 2 : 15) * kMs, "%s took %lld ns", what,
+           (long long)passed);
   }
 }
 
