@@ -58,8 +58,9 @@ void Set() {
     const std::int64_t date = Now(CLOCK_REALTIME), time = Now();
     EXPECT(set(date + by_ns) == 0, "%s: %s", what, strerror(errno));
     const std::int64_t passed = Now() - time, shown = Now(CLOCK_REALTIME) - date - by_ns;
-    EXPECT(passed >= 0 && passed < kMs, "%s: the time changed by %lld ns", what, (long long)passed);
-    EXPECT(shown >= -kSecond && shown < kMs + passed, "%s: %lld ns", what, (long long)shown);
+    EXPECT(passed >= 0 && passed < 5 * kMs, "%s: the time changed by %lld ns", what,
+           (long long)passed);
+    EXPECT(shown >= -kSecond && shown < 5 * kMs + passed, "%s: %lld ns", what, (long long)shown);
   };
   steps("clock_settime", kHour, SetTo);
   steps("settimeofday", -kHour, [](std::int64_t date_ns) {
@@ -83,7 +84,7 @@ void Set() {
   const std::int64_t before = Now(CLOCK_REALTIME);
   EXPECT(syscall(SYS_adjtimex, &raw) >= 0, "raw adjtimex: %s", strerror(errno));
   const std::int64_t read_ns = raw.time.tv_sec * kSecond + kSecond;
-  EXPECT(read_ns > before && read_ns - before <= kSecond + kMs, "raw adjtimex: another date");
+  EXPECT(read_ns > before && read_ns - before <= kSecond + 5 * kMs, "raw adjtimex: another date");
   raw.modes = ADJ_TICK;
   EXPECT(syscall(SYS_adjtimex, &raw) == -1 && errno == EPERM, "raw adjtimex");
   EXPECT(syscall(SYS_clock_adjtime, CLOCK_REALTIME, &raw) == -1 && errno == EPERM, "clock_adjtime");
@@ -175,7 +176,7 @@ void Waits() {
       {"timer_create from now", [] { WaitForPosixTimer(0, 100 * kMs); }},
   };
   const auto is = [](std::int64_t took, std::int64_t wanted) {
-    return took >= wanted && took < wanted + 3 * kMs;
+    return took >= wanted && took < wanted + (g_mode == Mode::kFixed ? 3 : 15) * kMs;
   };
   for (const auto& [what, wait] : by_date) {
     const std::int64_t on = Took(kHour, wait), back = Took(-kHour, wait);

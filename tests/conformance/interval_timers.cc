@@ -20,6 +20,9 @@ void Note(int) {
   g_count = g_count + 1;
 }
 
+// Under tcs; where it is measured an interrupt of the host's may come in between.
+std::int64_t MostLate() { return (g_mode == Mode::kMeasured ? 5 : 1) * kMs; }
+
 void WaitFor(int count) {
   while (g_count < count) usleep(1'000'000);
 }
@@ -36,7 +39,7 @@ void OnceAndAgain() {
   EXPECT(setitimer(ITIMER_REAL, &timer, nullptr) == 0, "setitimer");
   WaitFor(1);
   EXPECT(g_at[0] - start >= 30 * kMs, "after %lld ns", (long long)(g_at[0] - start));
-  if (g_mode != Mode::kNative) EXPECT(g_at[0] - start < 31 * kMs, "late");
+  if (g_mode != Mode::kNative) EXPECT(g_at[0] - start < 30 * kMs + MostLate(), "late");
   usleep(100'000);
   EXPECT(g_count == 1, "a one-shot timer fired %d times", int(g_count));
 
@@ -49,7 +52,7 @@ void OnceAndAgain() {
     const std::int64_t after = g_at[i] - start, due = 20 * kMs + i * 10 * kMs;
     EXPECT(after >= due, "expiry %d came after %lld ns", i, (long long)after);
     if (g_mode != Mode::kNative)
-      EXPECT(after < due + kMs, "expiry %d after %lld ns", i, (long long)after);
+      EXPECT(after < due + MostLate(), "expiry %d after %lld ns", i, (long long)after);
   }
   itimerval left{};
   EXPECT(getitimer(ITIMER_REAL, &left) == 0, "getitimer");
@@ -73,7 +76,7 @@ void Alarms() {
   EXPECT(left >= 1 && left <= 2, "alarm says %u s were left", left);
   WaitFor(1);
   EXPECT(g_at[0] - start >= kSecond, "after %lld ns", (long long)(g_at[0] - start));
-  if (g_mode != Mode::kNative) EXPECT(g_at[0] - start < kSecond + kMs, "late");
+  if (g_mode != Mode::kNative) EXPECT(g_at[0] - start < kSecond + MostLate(), "late");
   alarm(1);
   EXPECT(alarm(0) == 1, "an alarm just set");
 }
@@ -87,7 +90,7 @@ void Microseconds() {
     const std::int64_t after = g_at[i] - start, due = (20 + 10 * i) * kMs;
     EXPECT(after >= due, "expiry %d came after %lld ns", i, (long long)after);
     if (g_mode == Mode::kMeasured)
-      EXPECT(after < due + kMs, "expiry %d after %lld ns", i, (long long)after);
+      EXPECT(after < due + MostLate(), "expiry %d after %lld ns", i, (long long)after);
     if (g_mode == Mode::kFixed)
       EXPECT(after <= due + 5 * kCallNs, "expiry %d after %lld ns", i, (long long)after);
   }

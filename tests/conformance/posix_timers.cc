@@ -66,10 +66,13 @@ void WaitFor(int count) {
   while (g_count < count) usleep(1'000'000);
 }
 
-// Never early; under tcs not late: with set costs by no more than the calls on the way.
+// Never early; under tcs not late: with set costs by no more than the calls on the way, and where
+// it is measured an interrupt of the host's may come in between.
 void ExpectAt(std::int64_t after, std::int64_t due, const char* what) {
   EXPECT(after >= due, "%s came after %lld ns", what, (long long)after);
-  if (g_mode == Mode::kMeasured) EXPECT(after < due + kMs, "%s: %lld ns", what, (long long)after);
+  if (g_mode == Mode::kMeasured) {
+    EXPECT(after < due + 4 * kMs, "%s: %lld ns", what, (long long)after);
+  }
   if (g_mode == Mode::kFixed) {
     EXPECT(after <= due + 3 * kCallNs, "%s: %lld ns", what, (long long)after);
   }
@@ -180,7 +183,7 @@ void OverrunsOfWhatDoesNothing() {
   const int overruns = timer_getoverrun(timer);
   EXPECT(overruns >= 500, "%d overruns", overruns);
   if (g_mode == Mode::kFixed) EXPECT(overruns < 530, "%d overruns", overruns);
-  if (g_mode == Mode::kMeasured) EXPECT(overruns < 5'000, "%d overruns", overruns);
+  if (g_mode == Mode::kMeasured) EXPECT(overruns < 20'000, "%d overruns", overruns);
   timer_delete(timer);
 }
 
@@ -234,7 +237,7 @@ void ByThreads() {
     const std::int64_t after = g_called_at[i] - start, due = (i + 1) * 20 * kMs;
     EXPECT(after >= due, "call %d after %lld ns", i, (long long)after);
     if (g_mode != Mode::kNative)
-      EXPECT(after < due + 2 * kMs, "call %d after %lld ns", i, (long long)after);
+      EXPECT(after < due + 10 * kMs, "call %d after %lld ns", i, (long long)after);
     if (g_mode == Mode::kFixed)
       EXPECT(after <= due + 10 * kCallNs, "call %d after %lld ns", i, (long long)after);
   }
@@ -276,7 +279,8 @@ void* Periods(void* raw) {
     if (g_mode == Mode::kNative) continue;
     EXPECT(info.si_overrun == 0, "%d overruns", info.si_overrun);
     const std::int64_t after = Now() - start;
-    EXPECT(after >= i * period && after < i * period + kMs, "period %d of %lld: %lld ns", i,
+    const std::int64_t most = (g_mode == Mode::kFixed ? 1 : 4) * kMs;
+    EXPECT(after >= i * period && after < i * period + most, "period %d of %lld: %lld ns", i,
            (long long)period, (long long)after);
   }
   timer_delete(timer);
@@ -320,6 +324,7 @@ void ToWhoTakesIt() {
   Handle(SIGRTMIN + 6);
   sem_t never;
   sem_init(&never, 0, 0);
+  g_sleeper = 0;
   pthread_t thread;
   EXPECT(pthread_create(
              &thread, nullptr,
@@ -335,6 +340,7 @@ void ToWhoTakesIt() {
   sigaddset(&set, SIGRTMIN + 6);
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   usleep(1000);
+  NativelyUntil([] { return g_sleeper != 0 && Sleeps(g_sleeper); });
   const timer_t timer = Create(CLOCK_MONOTONIC, BySignal(SIGRTMIN + 6, 3));
   g_count = 0;
   const std::int64_t start = Now();
@@ -385,7 +391,7 @@ void OnProcessorTime() {
     const std::int64_t used = Now(clock) - start;
     EXPECT(g_count == 1, "the timer on clock %d never fired", clock);
     // What is found to be stolen is taken out afterwards.
-    EXPECT(used >= 30 * kMs - kMs / 5 && used < (g_mode == Mode::kNative ? 500 : 32) * kMs,
+    EXPECT(used >= 30 * kMs - kMs / 5 && used < (g_mode == Mode::kNative ? 500 : 40) * kMs,
            "clock %d: after %lld ns", clock, (long long)used);
     timer_delete(timer);
   }
@@ -422,8 +428,8 @@ void EndWithTheProgram() {
     signal(SIGALRM, SIG_DFL);
     timer_t timer;
     if (timer_create(CLOCK_MONOTONIC, nullptr, &timer) != 0) _exit(1);
-    Set(timer, 50 * kMs);
-    execlp("sleep", "sleep", "0.2", nullptr);
+    Set(timer, 150 * kMs);  // more than it takes to get there
+    execlp("sleep", "sleep", "0.4", nullptr);
     _exit(2);
   }
   int status = -1;
