@@ -17,6 +17,9 @@ void Count(int) { g_handled = g_handled + 1; }
 
 int main(int argc, char** argv) {
   Begin(argc, argv);
+  const bool is_native = g_mode == Mode::kNative;
+  // Natively a busy machine may be late.
+  const std::int64_t whole = is_native ? 3 * kSecond : 300 * kMs;
   for (const int flags : {0, SA_RESTART}) {  // sleeps end either way
     struct sigaction action {};
     action.sa_handler = Count;
@@ -26,26 +29,28 @@ int main(int argc, char** argv) {
 
     std::int64_t start = Now();
     AlarmIn(100 * kMs);
-    const timespec wanted = ToTimespec(300 * kMs);
+    const timespec wanted = ToTimespec(whole);
     timespec left{};
     EXPECT(nanosleep(&wanted, &left) == -1 && errno == EINTR, "nanosleep was not interrupted");
     const std::int64_t passed = Now() - start;
     EXPECT(g_handled == before + 1, "%d handlers ran", int(g_handled - before));
-    EXPECT(passed >= 100 * kMs && passed < 290 * kMs, "after %lld ns", (long long)passed);
-    EXPECT(ToNs(left) > 0 && ToNs(left) <= 200 * kMs + kMs, "left: %lld ns", (long long)ToNs(left));
-    EXPECT(ToNs(left) + passed >= 300 * kMs - kMs, "left %lld ns after %lld ns",
-           (long long)ToNs(left), (long long)passed);
+    EXPECT(passed >= 100 * kMs && passed < whole - 10 * kMs, "after %lld ns", (long long)passed);
+    EXPECT(ToNs(left) > 0 && ToNs(left) <= whole - 95 * kMs, "left: %lld ns",
+           (long long)ToNs(left));
+    EXPECT(ToNs(left) + passed >= whole - kMs, "left %lld ns after %lld ns", (long long)ToNs(left),
+           (long long)passed);
 
     start = Now();
     AlarmIn(100 * kMs);
     left = {};
     EXPECT(clock_nanosleep(CLOCK_MONOTONIC, 0, &wanted, &left) == EINTR, "clock_nanosleep");
-    EXPECT(ToNs(left) > 0 && ToNs(left) <= 201 * kMs, "left: %lld ns", (long long)ToNs(left));
+    EXPECT(ToNs(left) > 0 && ToNs(left) <= whole - 95 * kMs, "left: %lld ns",
+           (long long)ToNs(left));
 
     start = Now();
     AlarmIn(100 * kMs);
     const unsigned unslept = sleep(5);
-    EXPECT(unslept >= 4 && unslept <= 5, "sleep says %u s are left", unslept);
+    EXPECT(unslept >= (is_native ? 1u : 4u) && unslept <= 5, "sleep says %u s are left", unslept);
 
     AlarmIn(100 * kMs);
     EXPECT(usleep(900'000) == -1 && errno == EINTR, "usleep was not interrupted");
