@@ -88,7 +88,8 @@ void Meanwhile(Fate fate, int fd, int other, const std::function<void()>& call,
   closer.join();
   EXPECT(passed >= ends_after, "%s: over after %lld ns", g_what.c_str(), (long long)passed);
   if (g_mode != Mode::kNative) {
-    const std::int64_t slack = g_mode == Mode::kFixed ? 100 * kCallNs : 6 * kMs;
+    // Where it is measured, what a thread's birth and 300 kB cost is the host's.
+    const std::int64_t slack = g_mode == Mode::kFixed ? 100 * kCallNs : 15 * kMs;
     EXPECT(passed < ends_after + slack, "%s: over after %lld ns", g_what.c_str(),
            (long long)passed);
   }
@@ -232,7 +233,7 @@ void ExpectClosed(Kind kind, int writer) {
   if (kind == Kind::kUdp) return;  // an error would come late
   if (kind == Kind::kTcp) {
     pollfd hung_up{writer, POLLRDHUP, 0};
-    EXPECT(poll(&hung_up, 1, 100) == 1, "%s: the connection is still there", g_what.c_str());
+    EXPECT(poll(&hung_up, 1, 10'000) == 1, "%s: the connection is still there", g_what.c_str());
     return;
   }
   const ssize_t n = write(writer, "x", 1);
@@ -691,11 +692,13 @@ void Polls(const Poller& poller, Fate fate, bool is_full) {
   // It looks again when woken, and at the end: woken by the file, and not by the other.
   const bool at_once = is_full || fate == Fate::kClosed;
   int found = -1;
+  const pid_t caller = gettid();
   Meanwhile(
       fate, ends[0], other[0], [&] { found = poller.poll(ends[0], kTimeoutMs); },
       [&] {
         EXPECT(write(ends[1], "x", 1) == 1, "write");
         usleep(20'000);
+        NativelyUntil([&] { return Sleeps(caller); });  // it has looked
         EXPECT(write(other[1], "x", 1) == 1, "write");
       },
       at_once ? kComesAfter : kTimeoutMs * kMs);

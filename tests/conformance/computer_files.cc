@@ -17,6 +17,7 @@
 #include <string>
 
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 using namespace conformance;
 
@@ -279,6 +280,7 @@ void Processes() {
     _exit(0);
   }
   usleep(200'000);
+  NativelyUntil([=] { return Sleeps(child); });
   const std::string of_child = TextOf("/proc/" + std::to_string(child) + "/stat");
   ExpectTimeBetween(before, StartIn(of_child), Now(CLOCK_BOOTTIME) - 200 * kMs, "a child's start");
   EXPECT(ComputedIn(of_child) <= 50 * kMs, "what it has computed");
