@@ -18,8 +18,9 @@ namespace {
 using namespace conformance;
 
 constexpr std::int64_t kSleep = 20 * kMs, kInterval = 5 * kMs;
-// Natively it has it 0 to 80 ms after it has woken, on a busy host.
-constexpr std::int64_t kMostLate = 50 * kMs;
+// Natively it has it 0 to 80 ms after it has woken, on a busy host. Where it is measured, how often
+// it tries in vain is the host's; who starves never has it.
+std::int64_t MostLate() { return (g_mode == Mode::kMeasured ? 300 : 50) * kMs; }
 
 class InterpreterLock {
  public:
@@ -108,7 +109,7 @@ void Loop(const Call& call, int readings) {
   const std::int64_t took = Now() - start;
   EXPECT(took >= kSleep, "%s, %d readings: after %lld ns", call.name, readings, (long long)took);
   if (g_mode == Mode::kNative) return;
-  EXPECT(took < kSleep + kMostLate, "%s, %d readings: after %lld ns", call.name, readings,
+  EXPECT(took < kSleep + MostLate(), "%s, %d readings: after %lld ns", call.name, readings,
          (long long)took);
 }
 
@@ -137,7 +138,7 @@ void LoopBesideTries() {
   pthread_mutex_unlock(&g_mutex);
   pthread_join(thread, nullptr);
   const std::int64_t took = Now() - start;
-  if (g_mode == Mode::kFixed) EXPECT(took < kMostLate, "tries took %lld ns", (long long)took);
+  if (g_mode == Mode::kFixed) EXPECT(took < MostLate(), "tries took %lld ns", (long long)took);
 }
 
 }  // namespace
