@@ -170,9 +170,11 @@ void Queues(const Place& p) {
   mq_attr attributes{};
   attributes.mq_maxmsg = 2;
   attributes.mq_msgsize = 16;
-  const mqd_t queue = mq_open("/tcs_bad_pointers", O_RDWR | O_CREAT, 0600, &attributes);
+  char name[40];
+  snprintf(name, sizeof name, "/tcs_bad_pointers_%d", getpid());
+  const mqd_t queue = mq_open(name, O_RDWR | O_CREAT, 0600, &attributes);
   EXPECT(queue >= 0, "mq_open: %s", strerror(errno));
-  mq_unlink("/tcs_bad_pointers");
+  mq_unlink(name);
   const int semaphores = semget(IPC_PRIVATE, 1, 0600), messages = msgget(IPC_PRIVATE, 0600);
   char text[16];
   sembuf take{0, -1, 0};
@@ -255,10 +257,10 @@ void Answers(const Place& p) {
     FAULTS(setitimer(ITIMER_REAL, &no_value, As<itimerval>(p)));
     FAULTS(timerfd_settime(fd, 0, &no_time, As<itimerspec>(p)));
     FAULTS(timer_settime(timer, 0, &no_time, As<itimerspec>(p)));
-    const itimerval soon{{0, 0}, {0, 20'000}};
-    const timespec second{1, 0};
+    const itimerval soon{{0, 0}, {0, 100'000}};
+    const timespec later{3, 0};
     setitimer(ITIMER_REAL, &soon, nullptr);
-    FAULTS(nanosleep(&second, As<timespec>(p)));
+    FAULTS(nanosleep(&later, As<timespec>(p)));
   }
   timer_delete(timer);
   close(fd);

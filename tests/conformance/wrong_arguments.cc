@@ -443,8 +443,10 @@ void SystemVAndQueues(int socket) {
   mq_attr attributes{};
   attributes.mq_maxmsg = 2;
   attributes.mq_msgsize = 8;
-  const mqd_t queue = mq_open("/tcs_wrong_arguments", O_RDWR | O_CREAT, 0600, &attributes);
-  mq_unlink("/tcs_wrong_arguments");
+  char name[40];
+  snprintf(name, sizeof name, "/tcs_wrong_arguments_%d", getpid());
+  const mqd_t queue = mq_open(name, O_RDWR | O_CREAT, 0600, &attributes);
+  mq_unlink(name);
   char text[16] = {};
   for (const timespec& wrong : {kNegative, kNegativeNs, kTooMany}) {
     FAILS(EINVAL, mq_timedreceive(queue, text, 8, nullptr, &wrong));
