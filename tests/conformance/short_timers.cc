@@ -93,7 +93,7 @@ void ReadersAreWoken() {
     const std::int64_t passed = Now() - start;
     EXPECT(all >= kReads && all <= passed / interval + 1, "%lld in %lld ns", (long long)all,
            (long long)passed);
-    if (g_mode == Mode::kMeasured) EXPECT(passed < 20 * kMs, "%lld ns", (long long)passed);
+    if (g_mode == Mode::kMeasured) EXPECT(passed < 60 * kMs, "%lld ns", (long long)passed);
     if (g_mode == Mode::kFixed && interval >= 10'000) {
       EXPECT(passed < (kReads + 2) * interval, "%lld ns", (long long)passed);
     }
@@ -109,9 +109,11 @@ void HandlersLetTheProgramGetOn() {
   // Natively the shortest leaves no time to anything but the handler.
   const suseconds_t interval_us = g_mode == Mode::kNative ? 200 : 1;
   const itimerval often{{0, interval_us}, {0, interval_us}};
-  const std::int64_t start = Now();
+  // And others may have the processor all that while, so that it gets one signal for all.
+  const clockid_t clock = g_mode == Mode::kNative ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC;
+  const std::int64_t start = Now(clock);
   EXPECT(setitimer(ITIMER_REAL, &often, nullptr) == 0, "setitimer");
-  while (Now() < start + 20 * kMs) {
+  while (Now(clock) < start + 20 * kMs) {
   }
   const itimerval off{};
   EXPECT(setitimer(ITIMER_REAL, &off, nullptr) == 0, "setitimer");
