@@ -45,5 +45,9 @@ int main(int argc, char** argv) {
 
   start = Now();
   for (int i = 0; i < 1000; ++i) usleep(1000);
-  ExpectWaited(start, kSecond, 1001, "a thousand sleeps of 1 ms");
+  if (g_mode == Mode::kMeasured) {  // what a thousand calls cost is the host's
+    ExpectSoonAfter(start, kSecond, "a thousand sleeps of 1 ms", 100 * kMs);
+  } else {
+    ExpectWaited(start, kSecond, 1001, "a thousand sleeps of 1 ms");
+  }
 }
