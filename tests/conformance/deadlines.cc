@@ -103,7 +103,9 @@ void TheRuntimeIsKept() {
   pthread_join(other, nullptr);
   // Natively the kernel lets it overrun, by a tick.
   if (g_mode == Mode::kNative) return;
-  EXPECT(had >= 30 * kMs - kMs / 10 && had <= 30 * kMs + kMs, "it has had %lld ns of 30 ms",
+  // A thread's clock may have been ahead of what it had computed, and its last turn may end late.
+  const std::int64_t slack = g_mode == Mode::kMeasured ? 2 * kMs : kMs;
+  EXPECT(had >= 30 * kMs - slack / 10 && had <= 30 * kMs + slack, "it has had %lld ns of 30 ms",
          (long long)had);
 }
 
@@ -122,7 +124,7 @@ void ItPrecedesEverybody() {
     const timespec t = ToTimespec(until);
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
     const std::int64_t late = Now() - until;
-    EXPECT(late >= 0 && late <= (g_mode == Mode::kFixed ? 2 * kCallNs : kMs), "%lld ns late",
+    EXPECT(late >= 0 && late <= (g_mode == Mode::kFixed ? 2 * kCallNs : 3 * kMs), "%lld ns late",
            (long long)late);
   }
   g_stop.store(true);

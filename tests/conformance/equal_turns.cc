@@ -25,14 +25,15 @@ int main(int argc, char** argv) {
   Begin(argc, argv);
   pthread_t thread;
   EXPECT(pthread_create(&thread, nullptr, Compute, nullptr) == 0, "pthread_create");
+  const std::int64_t most_late = (g_mode == Mode::kFixed ? 2 : 4) * kMs;
   for (int i = 0; i < 20; ++i) {
     const std::int64_t start = Now();
     usleep(10'000);
     const std::int64_t passed = Now() - start;
     EXPECT(passed >= 10 * kMs, "a sleep of 10 ms took %lld ns", (long long)passed);
-    // No more than a turn of the other.
+    // No more than a turn of the other, of 1.5 ms at most; measured, interrupts of the host's come.
     if (g_mode != Mode::kNative)
-      EXPECT(passed < 12 * kMs, "a sleep of 10 ms took %lld ns", (long long)passed);
+      EXPECT(passed < 10 * kMs + most_late, "a sleep of 10 ms took %lld ns", (long long)passed);
   }
   sigset_t set;
   sigemptyset(&set);
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
   const std::int64_t passed = Now() - start;
   EXPECT(passed >= 30 * kMs, "a timer of 30 ms took %lld ns", (long long)passed);
   if (g_mode != Mode::kNative)
-    EXPECT(passed < 32 * kMs, "a timer of 30 ms took %lld ns", (long long)passed);
+    EXPECT(passed < 30 * kMs + most_late, "a timer of 30 ms took %lld ns", (long long)passed);
   g_done = true;
   pthread_join(thread, nullptr);
 }

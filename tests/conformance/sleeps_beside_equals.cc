@@ -61,9 +61,10 @@ void SleepOften() {
     worst = std::max(worst, passed);
     if (passed > kMs + kMs / 2) ++late;
   }
-  // A turn of one of the others would be 1 ms.
+  // A turn of one of the others would be 1 ms. Where it is measured, interrupts of the host's come.
+  const int most = g_mode == Mode::kFixed ? 2 : 10;
   if (g_mode != Mode::kNative)
-    EXPECT(late <= 2, "%d of %d sleeps were late, the worst took %lld ns", late, kSleeps,
+    EXPECT(late <= most, "%d of %d sleeps were late, the worst took %lld ns", late, kSleeps,
            (long long)worst);
 }
 

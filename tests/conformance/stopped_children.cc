@@ -71,7 +71,7 @@ void ByAnother(const char* what, Life life, int stop, Wait wait) {
   EXPECT(wait(child, &status) == child && WIFCONTINUED(status), "%s: %x", what, status);
   ExpectPassed(start, 200 * kMs, what);
   EXPECT(wait(child, &status) == child && WIFSIGNALED(status), "%s: %x", what, status);
-  ExpectPassed(start, 300 * kMs, what);
+  ExpectPassed(start, 300 * kMs, what, MostOfChildren());
   Reap(controller);
 }
 
@@ -123,7 +123,7 @@ void NotAskedFor() {
   const pid_t child = Start(Sleep), controller = Controller(child, start, SIGSTOP);
   int status = 0;
   EXPECT(waitpid(child, &status, 0) == child && WIFSIGNALED(status), "%x", status);
-  ExpectPassed(start, 300 * kMs, "the end of a child that was stopped");
+  ExpectPassed(start, 300 * kMs, "the end of a child that was stopped", MostOfChildren());
   Reap(controller);
 }
 
@@ -145,7 +145,7 @@ void Signals(int flags, int wanted) {
     EXPECT(g_signals == i, "%d signals", g_signals);
   }
   while (g_signals == wanted) usleep(900'000);
-  ExpectPassed(start, 300 * kMs, "SIGCHLD of the end");
+  ExpectPassed(start, 300 * kMs, "SIGCHLD of the end", MostOfChildren());
   signal(SIGCHLD, SIG_DFL);
   int status = 0;
   EXPECT(waitpid(child, &status, 0) == child && WIFSIGNALED(status), "%x", status);

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     Expirations(fd);
     start = Now();
     EXPECT(poll(&polled, 1, 5000) == 1 && (polled.revents & POLLIN) != 0, "poll");
-    EXPECT(Now() - start <= (g_mode == Mode::kNative ? kSecond : 10 * kMs + kMs), "poll came late");
+    EXPECT(Now() - start <= (g_mode == Mode::kNative ? kSecond : 15 * kMs), "poll came late");
     const int set = epoll_create1(0);
     epoll_event event{};
     event.events = EPOLLIN;
@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
       const std::int64_t after = Now() - start, due = (20 + 10 * i) * kMs;
       EXPECT(after >= due, "period %d after %lld ns", i, (long long)after);
       if (g_mode == Mode::kMeasured)
-        EXPECT(after < due + kMs, "period %d after %lld ns", i, (long long)after);
+        EXPECT(after < due + 5 * kMs, "period %d after %lld ns", i, (long long)after);
       if (g_mode == Mode::kFixed)
         EXPECT(after <= due + 5 * kCallNs, "period %d after %lld ns", i, (long long)after);
     }

@@ -19,10 +19,11 @@ void Set(void* socket, int option, int value) {
   EXPECT(zmq_setsockopt(socket, option, &value, sizeof value) == 0, "option %d", option);
 }
 
-// It counts in milliseconds.
+// It counts in milliseconds. Where it is measured, what it computes itself is the host's.
 void ExpectTook(std::int64_t start, std::int64_t wanted_ns, const char* what) {
   const std::int64_t passed = Now() - start;
-  const std::int64_t most = g_mode == Mode::kNative ? kSecond : kMs + wanted_ns / 100;
+  const std::int64_t own = g_mode == Mode::kMeasured ? 5 * kMs : kMs;
+  const std::int64_t most = g_mode == Mode::kNative ? kSecond : own + wanted_ns / 100;
   EXPECT(passed > wanted_ns - kMs && passed < wanted_ns + most, "%s of %lld ms took %lld ns", what,
          (long long)(wanted_ns / kMs), (long long)passed);
 }
@@ -69,7 +70,9 @@ void RoutersAnswerAtOnce(void* context) {
     EXPECT(zmq_recv(dealer, body, sizeof body, 0) == 3, "the dealer");
   }
   const std::int64_t passed = Now() - start;
-  EXPECT(passed < (g_mode == Mode::kNative ? 5 * kSecond : 50 * kMs), "20 answers took %lld ns",
+  // Less than the 40 ms for which the kernel keeps an acknowledgement back, each time.
+  const std::int64_t most = (g_mode == Mode::kMeasured ? 500 : 50) * kMs;
+  EXPECT(passed < (g_mode == Mode::kNative ? 5 * kSecond : most), "20 answers took %lld ns",
          (long long)passed);
   zmq_close(dealer);
   zmq_close(router);
