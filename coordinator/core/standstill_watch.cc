@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
@@ -83,11 +84,12 @@ void StandstillWatch::NoteStandstill(HostTime now, VirtualTime furthest) {
       run_.report.switches != standstill_.dispatches || furthest != standstill_.furthest;
   // Once the user has typed something, the program that reads it has yet to be dispatched.
   if (has_acted || AwaitsTerminal()) {
-    standstill_ = {run_.report.switches, furthest, now};
+    standstill_ = {run_.report.switches, furthest, now, {}};
     return;
   }
-  const HostDuration stood = now - standstill_.since;
-  if (stood < kPatience) return;
+  const HostDuration since = now - std::exchange(standstill_.looked_at, now);
+  standstill_.stood += std::min(since, kMostBetweenLooks);
+  if (standstill_.stood < kPatience) return;
   has_said_standstill_ = true;
   const std::string why =
       std::any_of(run_.exiting.begin(), run_.exiting.end(), IsExiting)
@@ -98,7 +100,7 @@ void StandstillWatch::NoteStandstill(HostTime now, VirtualTime furthest) {
           : "only input from outside could make it go on; " + Joined(WhatIsAwaited());
   run_.options.on_notice(
       fmt::format("virtual time has stood still at {:.3f} s for {:.0f} s: {}; Ctrl-C ends the run",
-                  furthest.seconds(), stood.seconds(), why));
+                  furthest.seconds(), standstill_.stood.seconds(), why));
 }
 
 // A program alone has ended, and the run goes on for what it has left in the background.

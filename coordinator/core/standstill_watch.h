@@ -19,6 +19,8 @@ class StandstillWatch {
  public:
   // Shorter waits for what comes from outside are usual.
   static constexpr HostDuration kPatience = HostDuration::Seconds(5);
+  // So much counts of what is between two looks: the run itself may have had no processor.
+  static constexpr HostDuration kMostBetweenLooks = HostDuration::Seconds(2);
 
   StandstillWatch(const RunState& run, const UnmanagedThreads& unmanaged,
                   const UnknownChildren& unknown_children)
@@ -33,7 +35,8 @@ class StandstillWatch {
   struct Standstill {
     std::int64_t dispatches = -1;
     VirtualTime furthest;
-    HostTime since;
+    HostTime looked_at;
+    HostDuration stood;
   };
 
   void NoteStandstill(HostTime now, VirtualTime furthest);

@@ -41,13 +41,11 @@ std::vector<pid_t> AllProcesses() {
   return all;
 }
 
-// A run that is about to begin has not written yet whose memory it is.
+// A run that is about to begin has not written yet whose memory it is: that has its magic last.
 bool HasBegun(const UniqueFd& memory) {
-  std::uint32_t begins[2] = {};
-  static_assert(offsetof(StatePage, magic) == 0 &&
-                offsetof(StatePage, version) == sizeof begins[0]);
-  return pread(memory.get(), begins, sizeof begins, 0) == sizeof begins && begins[0] != 0 &&
-         begins[1] != 0;
+  std::uint32_t magic = 0;
+  static_assert(offsetof(StatePage, magic) == 0 && sizeof StatePage::magic == sizeof magic);
+  return pread(memory.get(), &magic, sizeof magic, 0) == sizeof magic && magic != 0;
 }
 
 // The memory that the process shares with whoever asks; none if it has none yet, or may not be

@@ -29,6 +29,7 @@ void StateLink::Open(const std::string& folder) {
   page->coordinator_pid = getpid();
   page->wake_fd = pipe->write_end.get();
   if (folder.size() < StatePage::kMostPath) memcpy(page->folder, folder.c_str(), folder.size());
+  page->magic.store(StatePage::kMagic);
   page_ = page;
   memory_ = std::move(memory.fd);
   pipe_ = std::move(*pipe);

@@ -40,8 +40,8 @@ struct StatePage {
   static constexpr std::uint32_t kVersion = 1;
   static constexpr std::size_t kMostPath = 4096;
 
-  // The coordinator, before anybody can find the page.
-  std::uint32_t magic = kMagic;
+  // The coordinator, before anybody can find the page: it cannot be found before it has its magic.
+  std::atomic<std::uint32_t> magic{0};  // last
   std::uint32_t version = kVersion;
   std::int32_t coordinator_pid = 0;  // as it knows itself
   std::int32_t wake_fd = -1;         // the number that the pipe's end for writing has there

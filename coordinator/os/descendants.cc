@@ -15,16 +15,21 @@ namespace tcs {
 
 namespace {
 
-constexpr int kKillTurns = 400;  // of 5 ms
+constexpr int kKillTurns = 400, kMostKillTurns = 12'000;  // of 5 ms
 constexpr useconds_t kKillTurnUs = 5'000;
 
 // All at once, not only the children: one that spins at real-time priority keeps its killed parent
 // from the processor, and with it from dying, for ever. And above them all, where that is
-// permitted: nobody forks faster than it is killed.
-void KillTree() {
+// permitted: nobody forks faster than it is killed. True if one of them waits for a processor.
+bool KillTree() {
   SetLevel(0, Level::kKernelOnly);
-  for (const pid_t pid : DescendantsOf(getpid())) kill(pid, SIGKILL);
+  bool waits = false;
+  for (const pid_t pid : DescendantsOf(getpid())) {
+    kill(pid, SIGKILL);
+    waits |= ThreadState(pid) == 'R';
+  }
   LeaveRealTime(0);
+  return waits;
 }
 
 }  // namespace
@@ -51,8 +56,9 @@ std::vector<pid_t> DescendantsOf(pid_t root) {
 }
 
 void KillDescendants() {
-  for (int turn = 0; turn < kKillTurns; ++turn) {
-    KillTree();
+  bool waits = false;
+  for (int turn = 0; turn < (waits ? kMostKillTurns : kKillTurns); ++turn) {
+    waits = KillTree();
     pid_t reaped;
     while ((reaped = waitpid(-1, nullptr, WNOHANG)) > 0) {
     }

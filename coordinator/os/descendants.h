@@ -13,8 +13,9 @@ namespace tcs {
 // All of them, as they are at this moment.
 std::vector<pid_t> DescendantsOf(pid_t root);
 
-// Kills and reaps what descends from this process, until nothing is left; gives up after two
-// seconds (a process in the disk's hands does not die).
+// Kills and reaps what descends from this process, until nothing is left. Gives up after two
+// seconds (a process in the disk's hands does not die), or a minute where one that was killed has
+// yet to get a processor, to die by.
 void KillDescendants();
 
 }  // namespace tcs

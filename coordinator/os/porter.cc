@@ -89,8 +89,11 @@ UniqueFd Porter::Await(std::uint32_t serial) {
         until_ms = NowMs() + kMostWaitMs;
         continue;
       }
-      errno = ETIMEDOUT;
-      return {};
+      // It may have answered just now, and sleep again.
+      if (!PollUntil(fds, NowMs())) {
+        errno = ETIMEDOUT;
+        return {};
+      }
     }
     if ((fds[0].revents & POLLIN) == 0) {
       errno = ESRCH;

@@ -37,6 +37,12 @@ class StandstillWatchTest : public testing::Test {
     return options;
   }
 
+  // Looks now and then, as a run does, from the first time to the last one.
+  void LookUntil(HostDuration first, HostDuration last, VirtualTime furthest) {
+    for (HostDuration at = first; at < last; at += kHostSecond) watch_.Look(HostAt(at), furthest);
+    watch_.Look(HostAt(last), furthest);
+  }
+
   std::vector<std::string> told_;
   Robot robot_{"robot", 1.0, RobotScheduler(1, true, [](int) { return RobotScheduler::Wait{}; })};
   RunState run_{Scenario{}, Telling(), false};
@@ -48,24 +54,32 @@ class StandstillWatchTest : public testing::Test {
 
 TEST_F(StandstillWatchTest, SaysOnceWhatIsWaitedForWhenPatienceIsOver) {
   AddClient("planner");
-  watch_.Look(HostAt(kHostSecond), kTwoSeconds);
-  watch_.Look(HostAt(kHostSecond + kPatience - HostNs(1)), kTwoSeconds);
+  LookUntil(kHostSecond, kHostSecond + kPatience - HostNs(1), kTwoSeconds);
   EXPECT_TRUE(told_.empty());
   watch_.Look(HostAt(kHostSecond + kPatience), kTwoSeconds);
   ASSERT_EQ(told_.size(), 1u);
   EXPECT_EQ(told_[0],
             "virtual time has stood still at 2.000 s for 5 s: only input from outside could make "
             "it go on; planner waits for DDS messages; Ctrl-C ends the run");
-  watch_.Look(HostAt(kHostSecond + 3 * kPatience), kTwoSeconds);
+  LookUntil(kHostSecond + kPatience, kHostSecond + 3 * kPatience, kTwoSeconds);
+  EXPECT_EQ(told_.size(), 1u);
+}
+
+TEST_F(StandstillWatchTest, TimeInWhichTheRunItselfHadNoProcessorIsNoStandstill) {
+  AddClient("planner");
+  watch_.Look(HostAt({}), kOneSecond);
+  watch_.Look(HostAt(3 * kPatience), kOneSecond);
+  EXPECT_TRUE(told_.empty());
+  LookUntil(3 * kPatience, 4 * kPatience, kOneSecond);
   EXPECT_EQ(told_.size(), 1u);
 }
 
 TEST_F(StandstillWatchTest, SaysNothingWhileTimeGoesOnOrThreadsAreDispatched) {
   AddClient("planner");
   watch_.Look(HostAt({}), {});
-  watch_.Look(HostAt(kPatience), RobotTime(1));
+  LookUntil(kHostSecond, kPatience, RobotTime(1));
   ++run_.report.switches;
-  watch_.Look(HostAt(2 * kPatience), RobotTime(1));
+  LookUntil(kPatience, 2 * kPatience - HostNs(1), RobotTime(1));
   EXPECT_TRUE(told_.empty());
 }
 
@@ -73,13 +87,12 @@ TEST_F(StandstillWatchTest, TimeThatAUserTakesToTypeIsNoStandstill) {
   AddClient("head");
   std::optional<Wait>& wait = robot_.tasks.back()->wait;
   wait = Wait{awaited::Descriptors{.has_terminal = true}};
-  watch_.Look(HostAt({}), kOneSecond);
-  watch_.Look(HostAt(3 * kPatience), kOneSecond);
+  LookUntil({}, 3 * kPatience, kOneSecond);
   // It has been typed, and the program has yet to be dispatched.
   wait.reset();
   watch_.Look(HostAt(3 * kPatience + HostNs(1)), kOneSecond);
   EXPECT_TRUE(told_.empty());
-  watch_.Look(HostAt(4 * kPatience), kOneSecond);
+  LookUntil(3 * kPatience + HostNs(1), 4 * kPatience + HostNs(1), kOneSecond);
   EXPECT_EQ(told_.size(), 1u);
 }
 
