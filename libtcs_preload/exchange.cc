@@ -26,8 +26,6 @@ using shm::WakeReason;
 // timeout the kernel also never restarts the wait behind our back after a signal handler.
 constexpr timespec kGateTurn{1, 0};
 constexpr std::int64_t kMostGateNs = 10'000;
-constexpr std::int64_t kMostExchangeNs = 50'000;    // of the thread's own, both ways
-constexpr std::int64_t kMostAttachNs = 20'000'000;  // where a porter is made on the way
 // More than a short system call takes, or one of its two ways.
 constexpr std::int64_t kMostCallNs = 1'000;
 constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's begins with it
@@ -175,7 +173,7 @@ using HandlersBefore = const std::uint32_t*;
 
 // False if a signal handler has run and the gate is still shut.
 bool WaitAtGate(shm::ThreadSlot& slot, HandlersBefore handlers, const Charged& charged,
-                std::int64_t most_ns = kMostExchangeNs) {
+                std::int64_t most_ns = shm::kMostExchangeNs) {
   for (;;) {
     std::uint32_t gate = slot.gate.load(std::memory_order_acquire);
     if (gate == shm::kGateOpen || IsShutDown()) {
@@ -309,8 +307,10 @@ struct Interrupted {
     reply[1] = slot.reply[1];
   }
 
+  // What the handler has computed is no part of what it interrupted.
   void PutBack(shm::ThreadSlot& slot) const {
     slot.note = note;
+    slot.note.time_ns = shm::ShownTime(slot.clock, shm::ReadClock(slot.clock));
     slot.reply[0] = reply[0];
     slot.reply[1] = reply[1];
     slot.wake_reason.store(reason);
@@ -363,7 +363,7 @@ bool IsAtGate(const GuestThread& thread) {
 
 void AwaitFirstDispatch(GuestThread& thread) {
   WaitAtGate(*thread.slot, nullptr, {},
-             g_header->has_porters != 0 ? kMostAttachNs : kMostExchangeNs);
+             g_header->has_porters != 0 ? shm::kMostAttachNs : shm::kMostExchangeNs);
 }
 
 void AwaitDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, nullptr, {}); }

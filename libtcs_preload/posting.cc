@@ -68,19 +68,26 @@ bool SendsAtOnce(int fd) {
          Has(fd, SOL_SOCKET, SO_TIMESTAMPING, 0);
 }
 
-// The bytes of the message; 0 where they are not all there, or in too many parts.
-std::size_t SizeOf(const msghdr& message) {
-  const iovec* parts = message.msg_iov;
-  if (message.msg_iovlen > kMostParts || !CanRead(parts, message.msg_iovlen * sizeof *parts)) {
-    return 0;
-  }
+// Where the bytes of a message are. Read once: other threads of the program may change what says
+// so.
+struct Parts {
+  iovec at[kMostParts];
+  std::size_t count = 0;
+  std::size_t size = 0;  // of all; 0 where they are not all there, or too many
+};
+
+void Read(const msghdr& message, Parts* parts) {
+  const std::size_t count = message.msg_iovlen;
+  if (count > kMostParts || !CanRead(message.msg_iov, count * sizeof(iovec))) return;
+  memcpy(parts->at, message.msg_iov, count * sizeof(iovec));
   std::size_t size = 0;
-  for (std::size_t i = 0; i < message.msg_iovlen; ++i) {
-    if (parts[i].iov_len > shm::Postbox::kMostSize) return 0;
-    if (!CanRead(parts[i].iov_base, parts[i].iov_len)) return 0;
-    size += parts[i].iov_len;
+  for (std::size_t i = 0; i < count; ++i) {
+    const iovec& part = parts->at[i];
+    if (part.iov_len > shm::Postbox::kMostSize || !CanRead(part.iov_base, part.iov_len)) return;
+    size += part.iov_len;
   }
-  return size;
+  parts->count = count;
+  parts->size = size;
 }
 
 // Null: there is none.
@@ -106,15 +113,15 @@ long Try(int fd, const msghdr& message, std::size_t size, int flags) {
                        static_cast<long>(message.msg_namelen));
 }
 
-void Put(GuestThread& thread, int receiver, const msghdr& message, std::size_t size) {
+void Put(GuestThread& thread, int receiver, const Parts& parts) {
   const shm::ClockPage& page = thread.slot->clock;
   const shm::Postbox::Head head{
       page.last_shown_ns.load(std::memory_order_relaxed), shm::RunTime(page, shm::ReadClock(page)),
-      static_cast<std::uint32_t>(receiver), static_cast<std::uint32_t>(size)};
+      static_cast<std::uint32_t>(receiver), static_cast<std::uint32_t>(parts.size)};
   shm::Postbox& box = thread.slot->postbox;
   shm::PostInto(box, head, [&](std::uint64_t position) {
-    for (std::size_t i = 0; i < message.msg_iovlen; ++i) {
-      const iovec& part = message.msg_iov[i];
+    for (std::size_t i = 0; i < parts.count; ++i) {
+      const iovec& part = parts.at[i];
       shm::CopyIntoRing(box, position, part.iov_base, part.iov_len);
       position += part.iov_len;
     }
@@ -137,7 +144,9 @@ bool Post(GuestThread& thread, int fd, int receiver, const msghdr& message, int 
           long* result) {
   if (!MayBePosted(thread, receiver, message, flags)) return false;
   const shm::OwnReceivers& receivers = shm::OwnReceiversOf(*g_run);
-  const std::size_t size = SizeOf(message);
+  Parts parts;
+  Read(message, &parts);
+  const std::size_t size = parts.size;
   if (!shm::HasRoomFor(thread.slot->postbox, size)) return false;
   if (!IsOfTheirKind(thread, fd, receivers.network)) return false;
   sa_family_t family;
@@ -150,7 +159,7 @@ bool Post(GuestThread& thread, int fd, int receiver, const msghdr& message, int 
   std::atomic_signal_fence(std::memory_order_seq_cst);
   // A handler may have posted meanwhile.
   const bool has_room = shm::HasRoomFor(thread.slot->postbox, size);
-  if (has_room) Put(thread, receiver, message, size);
+  if (has_room) Put(thread, receiver, parts);
   std::atomic_signal_fence(std::memory_order_seq_cst);
   thread.posts = false;
   *result = static_cast<long>(size);

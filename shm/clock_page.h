@@ -19,6 +19,16 @@ namespace tcs::shm {
 
 inline constexpr int kAdjustBits = 48;
 
+// So much of what a thread executes may be its exchange with the coordinator, both ways, each time:
+// virtual nanoseconds.
+inline constexpr std::int64_t kMostExchangeNs = 50'000;
+inline constexpr std::int64_t kMostAttachNs = 20'000'000;  // where a porter is made on the way
+
+// For who works on a page as it was at one instant, whatever others write there meanwhile.
+inline void CopyPage(const ClockPage& from, ClockPage* to) {
+  __builtin_memcpy(static_cast<void*>(to), static_cast<const void*>(&from), sizeof from);
+}
+
 constexpr std::int64_t AdjustValue(std::uint64_t word) {
   return static_cast<std::int64_t>(word << (64 - kAdjustBits)) >> (64 - kAdjustBits);
 }

@@ -98,9 +98,15 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
     grant.counts_work |= shm::kBeginsInCall;
   }
   grant.NoteLimits();
-  grant.WriteTo(page);
-  // One that computes on meanwhile goes to its gate rather than read what is half written.
-  if (!host_cpu_.stands_still()) page.horizon_ns = 0;
+  // One that computes on meanwhile reads again once there is another number; and it goes to its
+  // gate rather than read what is half written, for it has no horizon before it starts.
+  const std::int64_t added_ns = ChargedUndispatched(task);
+  ++task.dispatches;
+  page.executed_adjust.store(shm::PackAdjust(task.DispatchWord(), added_ns));
+  page.waited_adjust.store(task.DispatchWord());
+  ClockGrant written = grant;
+  if (!host_cpu_.stands_still()) written.horizon_ns = 0;
+  written.WriteTo(page);
   page.host_cpu_origin_ns = metered.page_origin_ns = metered.host_origin_ns;
   page.other_cpu_ns = task.process->threads == 1
                           ? task.process->ended.usage().charged_ns
@@ -115,9 +121,6 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];
   slot.wake_reason.store(task.reason);
-  ++task.dispatches;
-  page.executed_adjust.store(shm::PackAdjust(task.DispatchWord(), ChargedUndispatched(task)));
-  page.waited_adjust.store(task.DispatchWord());
 }
 
 // If something has ended the call meanwhile, the thread is on its way, and needs no answer unless
@@ -202,7 +205,14 @@ bool Engine::TakeNotesOf(Task& task) {
 
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
-  const char* what = slot_check_.WhatIsImpossible(task);
+  // Other threads of its process may write there meanwhile: what is checked is what is reckoned
+  // with.
+  shm::ThreadSlot& slot = SlotOf(task);
+  shm::ClockPage page;
+  shm::CopyPage(slot.clock, &page);
+  const shm::NotificationKind kind = slot.note.kind;
+  const std::int64_t noted_ns = slot.note.time_ns;
+  const char* what = slot_check_.WhatIsImpossible(task, page);
   // What it has received before it is told where its activations end; no clock is past the horizon.
   const VirtualTime furthest =
       run_.IsCallback() ? task.cpu->progress : std::max(task.cpu->progress, run_.turn.horizon());
@@ -213,17 +223,15 @@ void Engine::Settle(Task& task) {
     expulsion_.Expel(*task.process, what);
     return;
   }
-  shm::ThreadSlot& slot = SlotOf(task);
-  shm::ClockPage& page = slot.clock;
   MeteredThread& metered = task.metered;
-  host_cpu_.End(task, CpuClockOf(task));
+  host_cpu_.End(task, CpuClockOf(task), &page);
   // The shim counts and charges the calls that it sees, whatever the C library calls for it.
   const bool made_unseen_call = run_.turn.trapped.has_value() &&
                                 run_.turn.trapped->number != SYS_exit && slot.signals.load() == 0;
   if (made_unseen_call) {
-    host_cpu_.ChargeCall(task, task.process->call_cost);
+    host_cpu_.ChargeCall(task, task.process->call_cost, &page);
   }
-  const shm::ClockReading reading = host_cpu_.ClockOf(task);
+  const shm::ClockReading reading = shm::ReadClockAt(page, host_cpu_.stop_tsc());
   ProgramClock& clock = task.process->clock;
   const auto on_robot = [&clock](std::int64_t own_ns) {
     return clock.RobotTimeOf(OwnTime(own_ns));
@@ -242,13 +250,13 @@ void Engine::Settle(Task& task) {
       .is_preempted = run_.turn.timed_out && (!run_.turn.notified || run_.turn.is_sent_to_gate),
       .credit = -task.debt,
       .in_steps = task.metered.is_watched};
-  if (run_.turn.notified && slot.note.kind != shm::NotificationKind::kYield) {
-    run.noted = on_robot(slot.note.time_ns);
+  if (run_.turn.notified && kind != shm::NotificationKind::kYield) {
+    run.noted = on_robot(noted_ns);
     run.shown = std::max(on_robot(page.last_shown_ns.load()), *run.noted);
   }
   const auto [progress, debt, ours] = SettleRun(run);
   metered.host_origin_ns += metered.OnHost(ours).ns();
-  const VirtualDuration charged = VirtualNs(reading.cpu_ns) - ours;
+  const VirtualDuration charged = std::max(VirtualDuration(), VirtualNs(reading.cpu_ns) - ours);
   task.settled_adjust_ns = shm::AdjustValue(reading.executed_word);
   const VirtualDuration executed = std::max(VirtualDuration(), charged - task.charged);
   const HostDuration host = metered.OnHost(executed);
@@ -277,7 +285,7 @@ void Engine::Settle(Task& task) {
   task.ComeTo(progress);
   // Should it run on undispatched, while the kernel holds the one whose turn it is, it comes to its
   // gate when it next looks at its clock: others may have gone on since.
-  page.horizon_ns = task.grant.horizon_ns = 0;
+  slot.clock.horizon_ns = task.grant.horizon_ns = 0;
   if (Waker::IsRunnable(task)) waker_.Requeue(task);
   TakeNotesOf(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;

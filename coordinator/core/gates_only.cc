@@ -83,6 +83,7 @@ bool Engine::MayGoOn(Task& task) {
 
 void Engine::OpenGate(Task& task) {
   task.is_let_go = run_.gates_only;
+  HostCpu::AllowWay(task);
   HostCpu::OpenGate(SlotOf(task));
 }
 

@@ -31,6 +31,7 @@
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/shared_memory.h"
+#include "coordinator/os/tsc_facts.h"
 #include "coordinator/processes/client_folders.h"
 #include "coordinator/scenario/patience.h"
 #include "coordinator/tasks/signal_sets.h"
@@ -58,6 +59,12 @@ std::string Engine::Prepare() {
   state_link_.Does(Doing::kPrepares, __rdtsc());
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
+  if (!run_.IsFixed() && !IsHostsTscInvariant()) {
+    return "this processor's TSC changes its rate or stops, and by it programs would be charged; "
+           "use "
+           "a machine whose /proc/cpuinfo shows constant_tsc and nonstop_tsc, or `--accounting "
+           "fixed`, which needs no TSC";
+  }
   if (std::string error = network_.Open(run_.scenario); !error.empty()) return error;
   const auto make_at = [this](const std::string& address, const std::function<void()>& make) {
     network_.MakeAt(address, make);

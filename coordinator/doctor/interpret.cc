@@ -8,6 +8,8 @@
 #include <cstring>
 #include <sstream>
 
+#include "coordinator/os/tsc_facts.h"
+
 namespace tcs {
 
 namespace {
@@ -25,14 +27,6 @@ bool Contains(const std::string& list, int number) {
     const int n = std::sscanf(range.c_str(), "%d-%d", &first, &last);
     if (n == 1) last = first;
     if (n >= 1 && first <= number && number <= last) return true;
-  }
-  return false;
-}
-
-bool HasWord(const std::string& text, const std::string& word) {
-  std::stringstream words(text);
-  for (std::string w; words >> w;) {
-    if (w == word) return true;
   }
   return false;
 }
@@ -94,9 +88,8 @@ Finding JudgeTrap(int error) {
 }
 
 Finding JudgeTsc(const std::string& cpuinfo, const std::string& clocksource) {
-  const bool invariant = HasWord(cpuinfo, "constant_tsc") && HasWord(cpuinfo, "nonstop_tsc");
   const std::string source = clocksource.substr(0, clocksource.find('\n'));
-  if (!invariant) {
+  if (!IsTscInvariant(cpuinfo)) {
     return {"invariant TSC", Verdict::kMissing, "this processor's TSC changes its rate or stops",
             "use a machine whose /proc/cpuinfo shows constant_tsc and nonstop_tsc; `--accounting "
             "fixed` needs no TSC"};

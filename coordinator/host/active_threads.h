@@ -55,6 +55,11 @@ class ActiveThreads {
   }
   bool is_lent() const { return lent_ != nullptr; }
 
+  // Who was dispatched last runs no more, where the coordinator is about to sleep.
+  void HoldLast() {
+    if (last_ != nullptr && !last_->parked) Hold(*last_);
+  }
+
   bool IsLast(const HostThread& thread) const { return &thread == last_; }
   void Ended(const HostThread& thread) {
     if (last_ == &thread) last_ = nullptr;

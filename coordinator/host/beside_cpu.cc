@@ -26,6 +26,9 @@ constexpr std::int64_t kClaimsBesideEveryNs = 100'000'000;
 constexpr std::int64_t kLeftBesideNs = 2'000'000;
 constexpr int kMostDoublingsBeside = 8;
 constexpr std::uint32_t kNobody = UINT32_MAX;  // to be sent home: the warden ends
+constexpr std::uint32_t kSends = 1u << 31;
+// So long the opener may take before it is helped: a system call.
+constexpr std::int64_t kMostOpenNs = 100'000;
 
 }  // namespace
 
@@ -75,6 +78,7 @@ void BesideCpu::OpenGates() {
   BindTo(0, cpu_);
   LeaveRealTime(0);
   RunOnlyWhenIdle();
+  opener_tid_.store(gettid());
   while (!ends_.load()) {
     while (OpenNext() || __rdtsc() < awake_until_tsc_.load(std::memory_order_relaxed)) _mm_pause();
     sleeps_.store(1);
@@ -97,11 +101,15 @@ bool BesideCpu::OpenNext() {
 void BesideCpu::SendHomeWhenAsked() {
   BindTo(0, cpu_);
   while (!ends_.load()) {
-    if (const std::uint32_t tid = sends_.load(); tid != 0 && tid != kNobody) {
+    std::uint32_t tid = sends_.load();
+    // The coordinator may have sent it home itself by now, and want another one there.
+    const bool is_asked = tid != 0 && tid != kNobody;
+    if (is_asked && sends_.compare_exchange_strong(tid, tid | kSends)) {
       // It does not run meanwhile.
       executor_.Hold(static_cast<pid_t>(tid));
       BindTo(static_cast<pid_t>(tid), home_);
-      sends_.store(0);
+      std::uint32_t sent = tid | kSends;
+      sends_.compare_exchange_strong(sent, 0);
     }
     if (!ends_.load()) syscall(SYS_futex, &sends_, FUTEX_WAIT_PRIVATE, 0, nullptr, nullptr, 0);
   }
@@ -192,10 +200,26 @@ bool BesideCpu::GiveUp(HostThread& thread) {
   return true;
 }
 
+// Others may have its processor, where it runs only when nobody else does: then it goes before
+// them until it is done.
+void BesideCpu::AwaitOpener() {
+  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostOpenNs);
+  bool is_helped = false;
+  while (opens_.load()) {
+    if (is_helped || __rdtsc() < until_tsc) {
+      _mm_pause();
+      continue;
+    }
+    is_helped = true;
+    if (!SetLevel(opener_tid_.load(), Level::kKernelOnly)) LeaveRealTime(opener_tid_.load());
+  }
+  if (is_helped) RunOnlyWhenIdle(opener_tid_.load());
+}
+
 void BesideCpu::Forget(HostThread& thread) {
   TakeBack(thread);
   // Its slot goes with it.
-  while (opens_.load()) _mm_pause();
+  AwaitOpener();
   thread.turns_beside = false;
   --begun_;
 }
@@ -206,14 +230,19 @@ void BesideCpu::BringHome(HostThread& thread) {
     BindTo(thread.tid, home_);
     return;
   }
-  sends_.store(static_cast<std::uint32_t>(thread.tid));
+  auto asked = static_cast<std::uint32_t>(thread.tid);
+  sends_.store(asked);
   Wake(sends_);
   const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostWayBackNs);
-  while (sends_.load() != 0 && __rdtsc() < until_tsc) _mm_pause();
-  // The kernel may hold the one that was asked.
-  if (sends_.exchange(0) == 0) return;
-  executor_.Hold(thread.tid);
-  BindTo(thread.tid, home_);
+  while (sends_.load() == asked && __rdtsc() < until_tsc) _mm_pause();
+  if (sends_.compare_exchange_strong(asked, 0)) {
+    // The kernel holds the one that was asked.
+    executor_.Hold(thread.tid);
+    BindTo(thread.tid, home_);
+    return;
+  }
+  // It has begun, and was held in the midst of it, perhaps: nobody else may touch the thread.
+  while (sends_.load() != 0) _mm_pause();
 }
 
 void BesideCpu::LeaveToOthers(std::uint64_t tsc) {

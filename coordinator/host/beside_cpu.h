@@ -70,6 +70,7 @@ class BesideCpu {
   void Start();
   void OpenGates();
   bool OpenNext();
+  void AwaitOpener();
   bool TakeBack(const HostThread& thread);
   void SendHomeWhenAsked();
   void Wake(std::atomic<std::uint32_t>& word);
@@ -93,10 +94,12 @@ class BesideCpu {
   static constexpr std::size_t kMostGates = 16;
   std::array<std::atomic<shm::ThreadSlot*>, kMostGates> gates_{};
   std::atomic<std::uint64_t> asked_{0};
-  std::uint64_t opened_ = 0;              // the opener's
-  std::atomic<bool> opens_{false};        // it does, just now
+  std::uint64_t opened_ = 0;        // the opener's
+  std::atomic<bool> opens_{false};  // it does, just now
+  std::atomic<pid_t> opener_tid_{0};
   std::atomic<std::uint32_t> sleeps_{0};  // 1: the opener does, at this word
-  std::atomic<std::uint32_t> sends_{0};   // the thread that is to be sent home; 0: none
+  // The thread that is to be sent home; 0: none. With kSends the warden does it, just now.
+  std::atomic<std::uint32_t> sends_{0};
   std::thread opener_, warden_;
 };
 

@@ -16,6 +16,23 @@ namespace {
 // rate.
 constexpr std::uint64_t kLongTicks = 300'000;
 
+// What ways out of gates have not taken others of the thread's may take, but not for ever.
+constexpr VirtualDuration kMostWays = VirtualDuration::Milliseconds(2);
+
+// While it lives a thread's meter works on another page.
+class OnPage {
+ public:
+  OnPage(MeteredThread& thread, shm::ClockPage* page)
+      : thread_(thread), own_(std::exchange(thread.page, page)) {}
+  ~OnPage() { thread_.page = own_; }
+  OnPage(const OnPage&) = delete;
+  OnPage& operator=(const OnPage&) = delete;
+
+ private:
+  MeteredThread& thread_;
+  shm::ClockPage* const own_;
+};
+
 }  // namespace
 
 std::string HostCpu::Open(std::unique_ptr<Meter> meter) {
@@ -29,6 +46,7 @@ void HostCpu::Dispatch(HostThread& thread) {
   if (thread.slot_memory != nullptr) {
     thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = __rdtsc();
   }
+  AllowWay(thread);
   active_.Dispatch(thread);
   from_gate_ = std::exchange(thread.parked, false);
   detector_.Arm();
@@ -57,6 +75,7 @@ void HostCpu::Start(HostThread& thread, bool is_silent) {
 }
 
 void HostCpu::StartBeside(HostThread& thread, std::uint64_t tsc) {
+  AllowWay(thread);
   MeterOf(thread).Begin(thread.metered, tsc, true, false);
   // What a switch takes there is not known, nor counted: the clock begins behind it. Nor is
   // anything to be learnt from it of switches here.
@@ -83,16 +102,29 @@ void HostCpu::Continue(HostThread& thread) {
 
 // What the thread has taken out itself moved its origin; and it may have become another one
 // meanwhile.
-void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock) {
+void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock, shm::ClockPage* page) {
+  const OnPage on_copy(thread.metered, page);
   FollowOrigin(thread);
+  const std::int64_t stolen_ns = page->stolen_ns.load(std::memory_order_relaxed);
   MeterOf(thread).End(thread.metered, stop_tsc_, clock);
+  const std::int64_t more_ns = page->stolen_ns.load(std::memory_order_relaxed) - stolen_ns;
+  thread.slot_memory->clock.stolen_ns.fetch_add(more_ns, std::memory_order_relaxed);
+}
+
+void HostCpu::AllowWay(HostThread& thread, VirtualDuration most) {
+  VirtualDuration& ways = thread.metered.most_ways;
+  ways = std::max({ways, most, std::min(ways + most, kMostWays)});
 }
 
 void HostCpu::FollowOrigin(HostThread& thread) {
   MeteredThread& metered = thread.metered;
-  const std::int64_t moved_ns = metered.page->host_cpu_origin_ns - metered.page_origin_ns;
-  metered.page_origin_ns += moved_ns;
-  metered.host_origin_ns += moved_ns;
+  shm::ClockPage& page = *metered.page;
+  const HostDuration moved = std::clamp(HostNs(metered.OriginMovedOn(page)), HostDuration(),
+                                        metered.OnHost(metered.most_ways));
+  metered.page_origin_ns += moved.ns();
+  metered.host_origin_ns += moved.ns();
+  page.host_cpu_origin_ns = metered.page_origin_ns;
+  metered.most_ways -= std::min(metered.most_ways, metered.OnRobot(moved));
 }
 
 VirtualDuration HostCpu::Uncharged(const HostThread& thread, VirtualDuration charged,
@@ -134,7 +166,8 @@ void HostCpu::Check(HostThread& thread, const Meter::CpuClock& clock) {
   MeterOf(thread).Check(thread.metered, stop_tsc_, clock);
 }
 
-void HostCpu::ChargeCall(HostThread& thread, VirtualDuration cost) {
+void HostCpu::ChargeCall(HostThread& thread, VirtualDuration cost, shm::ClockPage* page) {
+  const OnPage on_copy(thread.metered, page);
   MeterOf(thread).ChargeCall(thread.metered, cost);
 }
 

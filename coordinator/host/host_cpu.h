@@ -68,7 +68,8 @@ class HostCpu {
   // Its clock begins at `tsc`, on another processor, or once it leaves its gate there.
   void StartBeside(HostThread& thread, std::uint64_t tsc);
   void Continue(HostThread& thread);
-  void End(HostThread& thread, const Meter::CpuClock& clock);
+  // `page`: a copy of the thread's, which the thread's process may change meanwhile.
+  void End(HostThread& thread, const Meter::CpuClock& clock, shm::ClockPage* page);
 
   // The TSC when the coordinator last woke, or let a thread run.
   std::uint64_t stop_tsc() const { return stop_tsc_; }
@@ -87,8 +88,12 @@ class HostCpu {
   // Of a thread that ran on though another one was dispatched.
   void Check(HostThread& thread, const Meter::CpuClock& clock);
   // What the thread has moved the origin of its CPU clock by, on its ways out of gates, is its own
-  // from now on.
+  // from now on: what these can have taken, that is.
   static void FollowOrigin(HostThread& thread);
+  // It goes out of a gate next, and may say what that took. Signals are let through again on that
+  // way, too.
+  static constexpr VirtualDuration kMostWay = VirtualNs(shm::kMostExchangeNs + 2'000);
+  static void AllowWay(HostThread& thread, VirtualDuration most = kMostWay);
   // What a thread has computed since it was last charged `charged`, by its CPU clock: while it was
   // not dispatched.
   static VirtualDuration Uncharged(const HostThread& thread, VirtualDuration charged,
@@ -97,8 +102,8 @@ class HostCpu {
   // since: that way is ours, as the shim has it where the next turn is there, too (LeaveGate).
   static void TakeOutWayToGate(HostThread& thread, VirtualDuration charged,
                                const Meter::CpuClock& clock);
-  // Of a thread that has stopped in a system call that its shim knows nothing of.
-  void ChargeCall(HostThread& thread, VirtualDuration cost);
+  // Of a thread that has stopped in a system call that its shim knows nothing of; `page` as in End.
+  void ChargeCall(HostThread& thread, VirtualDuration cost, shm::ClockPage* page);
 
  private:
   Meter& MeterOf(const HostThread& thread) {

@@ -4,8 +4,7 @@
 
 namespace tcs {
 
-bool HostThread::HasOwnClock() const {
-  const shm::ClockPage& page = slot_memory->clock;
+bool HostThread::IsOwn(const shm::ClockPage& page) const {
   const std::uint64_t number = shm::DispatchNumber(DispatchWord());
   return grant.StandsIn(page) && shm::DispatchNumber(page.executed_adjust.load()) == number &&
          shm::DispatchNumber(page.waited_adjust.load()) == number;

@@ -27,7 +27,8 @@ struct HostThread {
   // The word for the clock page that an adjustment of nothing in its last dispatch has.
   std::uint64_t DispatchWord() const { return dispatches << shm::kAdjustBits; }
   // Its clock is the one that it was given, with what it has added in its last dispatch.
-  bool HasOwnClock() const;
+  bool HasOwnClock() const { return IsOwn(slot_memory->clock); }
+  bool IsOwn(const shm::ClockPage& page) const;
 };
 
 }  // namespace tcs

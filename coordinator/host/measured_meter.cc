@@ -13,6 +13,11 @@ namespace {
 // More than what clocks and the coordinator's estimates differ by in one dispatch.
 constexpr std::int64_t kSlackNs = 10'000'000;
 
+// A thread asks its own CPU clock, and says that it has; and beside the coordinator it says when it
+// stopped. After so much it is not believed.
+constexpr HostDuration kAuditAfter = HostDuration::Milliseconds(1);
+constexpr int kTurnsToAudit = 100;
+
 // More than it has run was taken out of its clock, as stolen: by its program, or because the host's
 // clocks do not agree.
 bool HasTakenTooMuch(const shm::ClockPage& page, std::uint64_t tsc) {
@@ -98,6 +103,8 @@ void MeasuredMeter::Check(MeteredThread& thread, std::uint64_t tsc, const CpuClo
     switch_costs_.Learn(thread.unchecked_runs, static_cast<double>(stolen_ns) * thread.speed);
   }
   thread.unchecked_runs = {};
+  thread.unaudited_ticks = 0;
+  thread.unaudited_turns = 0;
   shm::RemoveStolen(page, reading, cpu_ns);
 }
 
@@ -107,7 +114,11 @@ void MeasuredMeter::CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const C
 }
 
 void MeasuredMeter::End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
-  if (thread.is_watched || HasTakenTooMuch(*thread.page, tsc)) {
+  thread.unaudited_ticks += tsc - thread.page->base_tsc;
+  const bool is_audited = ++thread.unaudited_turns > kTurnsToAudit ||
+                          static_cast<double>(thread.unaudited_ticks) >
+                              static_cast<double>(kAuditAfter.ns()) * rate_.ticks_per_ns;
+  if (thread.is_watched || is_audited || HasTakenTooMuch(*thread.page, tsc)) {
     Check(thread, tsc, clock);
   } else {
     CheckIfDue(thread, tsc, clock);

@@ -42,7 +42,11 @@ struct MeteredThread {
   HostDuration longest_run = HostDuration::Milliseconds(10);  // of late
   // Others look at what it does in short steps: its CPU clock is asked after each turn.
   bool is_watched = false;
+  // What its ways out of gates may still have taken: it says so itself, and it is not charged.
+  VirtualDuration most_ways;
   std::uint64_t unchecked_ticks = 0;  // of TSC run since its CPU clock was last asked
+  std::uint64_t unaudited_ticks = 0;  // the same, by the coordinator,
+  int unaudited_turns = 0;            // and in so many turns
   std::uint64_t checked_tsc = 0;      // what its page said of that at its dispatch
   UncheckedRuns unchecked_runs;       // by the coordinator
   std::uint64_t asked_tsc = 0;        // when it was last said how long it may run,
@@ -58,6 +62,12 @@ struct MeteredThread {
   // has been found silent.
   int silent_looks = 0;
   bool is_silent = false;
+
+  // What the page says that its origin has moved by, which may be anything.
+  std::int64_t OriginMovedOn(const shm::ClockPage& its) const {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(its.host_cpu_origin_ns) -
+                                     static_cast<std::uint64_t>(page_origin_ns));
+  }
 
   bool has_origin() const { return host_origin_ns != kNoOrigin; }
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "shm/clock_page.h"
 #include "shm/time_kinds.h"
 
 namespace tcs {
@@ -33,6 +34,8 @@ struct StoppedRun {
   // When the thread began to notify. None if it did not, and of a yield, which is a system call of
   // the program's natively, too: who spins on it must get on.
   std::optional<VirtualTime> noted;
+  // What of the rest may have been the notification itself: the thread says when it began.
+  VirtualDuration most_ours = VirtualNs(shm::kMostExchangeNs);
   bool is_preempted = false;  // by the timer, rather than by what it asked for
   VirtualDuration credit;     // that it had at its dispatch
   bool in_steps = false;      // others look at what it does in short steps
@@ -59,7 +62,7 @@ constexpr Settlement SettleRun(const StoppedRun& run) {
   // One that had begun to notify when an earlier turn ended still owes what it had executed then.
   if (run.noted.has_value() && *run.noted < run.horizon) {
     const VirtualTime begun = run.start + std::max(kNone, -run.credit);
-    result.ours = std::max(kNone, run.reached - std::max(*run.noted, begun));
+    result.ours = std::clamp(run.reached - std::max(*run.noted, begun), kNone, run.most_ours);
   }
   const VirtualTime reached = run.reached - result.ours;
   // What the clock has shown has happened, even where stolen time was found in it afterwards.

@@ -109,9 +109,9 @@ bool SetLevel(pid_t tid, Level level) {
   return sched_setscheduler(tid, SCHED_FIFO, &param) == 0;
 }
 
-void RunOnlyWhenIdle() {
+void RunOnlyWhenIdle(pid_t tid) {
   const sched_param param{0};
-  sched_setscheduler(0, SCHED_IDLE, &param);
+  sched_setscheduler(tid, SCHED_IDLE, &param);
 }
 
 void BeWokenInTime() { prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0); }

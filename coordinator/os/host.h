@@ -46,8 +46,9 @@ bool SetLevel(pid_t tid, Level level);
 // From now on SetLevel does nothing in this process and its forks, as where it is not permitted.
 void UseNoLevels();
 
-// The calling thread runs only when hardly anybody else on its CPU wants to. Everybody may do that.
-void RunOnlyWhenIdle();
+// The thread, 0 for the calling one, runs only when hardly anybody else on its CPU wants to.
+// Everybody may do that.
+void RunOnlyWhenIdle(pid_t tid = 0);
 
 // Of the calling thread, at ordinary priority: its timers are not put off, and it preempts those
 // that compute when it wakes, as far as the kernel lets it. Everybody may do that.

@@ -26,6 +26,7 @@ void Expulsion::Expel(Process& process, const char* what) {
                     "with tcs ({}), and was ended; look for a stray pointer in it",
                     process.name, process.pid, what));
   syscall(SYS_pidfd_send_signal, process.pidfd.get(), SIGKILL, nullptr, 0);
+  cpu_.active().HoldLast();
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
     if (task->process != &process) continue;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/host/host_cpu.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_file_limit.h"
 #include "coordinator/processes/attach_exchange.h"
@@ -171,6 +172,7 @@ void Registration::GivePlace(Task& task, Moment moment, std::uint64_t end_word, 
   task.parked = false;
   // What it computes from here on is its own, before its first dispatch, too.
   task.metered.host_origin_ns = is_newborn ? 0 : HostClockOf(task);
+  HostCpu::AllowWay(task, VirtualNs(shm::kMostAttachNs));
 }
 
 // The thread that registers: known already (a client, an announced child), a further thread of a

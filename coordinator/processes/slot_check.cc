@@ -28,11 +28,10 @@ bool CanBeStolen(std::int64_t stolen_ns, std::int64_t run_ns, const Robot& robot
 
 }  // namespace
 
-const char* SlotCheck::WhatIsImpossible(const Task& task) const {
-  const shm::ClockPage& page = SlotOf(task).clock;
-  if (!task.HasOwnClock()) return "the clock that it was given";
+const char* SlotCheck::WhatIsImpossible(const Task& task, const shm::ClockPage& page) const {
+  if (!task.IsOwn(page)) return "the clock that it was given";
   const ClockGrant& grant = task.grant;
-  const std::int64_t moved = page.host_cpu_origin_ns - task.metered.page_origin_ns;
+  const std::int64_t moved = task.metered.OriginMovedOn(page);
   if (moved < 0 || moved > kLargeSlackNs) return "its processor clock";
   const std::int64_t added = shm::AdjustValue(page.executed_adjust.load());
   const std::int64_t waited = shm::AdjustValue(page.waited_adjust.load());

@@ -23,8 +23,9 @@ class SlotCheck {
   SlotCheck(bool is_fixed, std::function<std::int64_t()> run_ns)
       : is_fixed_(is_fixed), run_ns_(std::move(run_ns)) {}
 
-  // Checks the clock of a thread that has just been stopped; null if all is well.
-  const char* WhatIsImpossible(const Task& task) const;
+  // Checks the clock of a thread that has just been stopped, by a copy of its page; null if all is
+  // well.
+  const char* WhatIsImpossible(const Task& task, const shm::ClockPage& page) const;
   // Checks a thread's notification.
   static const char* WhatIsImpossible(const shm::Notification& note);
 

@@ -52,6 +52,7 @@ bool UndispatchedThreads::WentToGate(Task& task) {
   if (run_.turn.IsOf(task)) {
     // It was on its way there when it was dispatched.
     if (std::exchange(run_.turn.goes_on_from_gate, true)) return false;
+    HostCpu::AllowWay(task);
     HostCpu::OpenGate(SlotOf(task));
     return true;
   }

@@ -115,6 +115,25 @@ TEST_F(BesideCpuTest, WhoeverIsNotWaitedForSaysSoByThePipe) {
   EXPECT_TRUE(says_by_pipe_);
 }
 
+TEST_F(BesideCpuTest, NobodyTouchesAThreadThatTheWardenIsAboutToSendHome) {
+  std::atomic<bool> is_holding{false};
+  executor_.holds = [&](pid_t) {
+    is_holding = true;
+    usleep(50'000);
+    is_holding = false;
+  };
+  computes_ = true;
+  ASSERT_TRUE(cpu_->Begin(thread_));
+  while (where_ != cpu_->cpu()) sched_yield();
+  EXPECT_TRUE(cpu_->GiveUp(thread_));
+  cpu_->BringHome(thread_);
+  EXPECT_FALSE(is_holding);
+  EXPECT_EQ(executor_.Told(), std::vector{"hold " + std::to_string(thread_.tid)});
+  while (where_ != home_) sched_yield();
+  computes_ = false;
+  while (turns_ == 0) sched_yield();
+}
+
 TEST_F(BesideCpuTest, WhoeverHasSaidSomethingIsNotGivenUp) {
   ASSERT_TRUE(cpu_->Begin(thread_));
   while (turns_ == 0) sched_yield();

@@ -39,6 +39,12 @@ class HostCpuTest : public testing::Test {
     slot_.clock.executed_adjust = slot_.clock.waited_adjust = thread_.DispatchWord();
   }
 
+  void End() {
+    shm::ClockPage page;
+    shm::CopyPage(slot_.clock, &page);
+    cpu_.End(thread_, clock_, &page);
+  }
+
   NotingExecutor executor_;
   HostCpu cpu_{executor_, HostDuration::Seconds(10)};
   shm::ThreadSlot slot_{};
@@ -120,9 +126,44 @@ TEST_F(HostCpuTest, WhatItsShimHasTakenOutStaysOut) {
   cpu_.Start(thread_, false);
   slot_.clock.host_cpu_origin_ns += 40;  // the way out of its gate
   thread_.metered.host_origin_ns += 5;   // an exec has changed it meanwhile
-  cpu_.End(thread_, clock_);
+  HostCpu::AllowWay(thread_);
+  End();
   EXPECT_EQ(thread_.metered.host_origin_ns, 745);
   EXPECT_EQ(thread_.metered.page_origin_ns, 740);
+}
+
+TEST_F(HostCpuTest, ItsShimTakesOutNoMoreThanItsWaysTake) {
+  WritePage();
+  constexpr std::int64_t kWay = HostCpu::kMostWay.ns();
+  slot_.clock.host_cpu_origin_ns = kMs;
+  HostCpu::AllowWay(thread_);
+  HostCpu::FollowOrigin(thread_);
+  EXPECT_EQ(slot_.clock.host_cpu_origin_ns, kWay);
+  EXPECT_EQ(thread_.metered.page_origin_ns, kWay);
+  slot_.clock.host_cpu_origin_ns += kMs;
+  HostCpu::FollowOrigin(thread_);
+  EXPECT_EQ(slot_.clock.host_cpu_origin_ns, kWay) << "it has gone no other way since";
+  // What ways have not taken is saved up, but not for ever.
+  for (int i = 0; i < 1'000'000; ++i) HostCpu::AllowWay(thread_);
+  for (const std::int64_t odd : {INT64_MAX, INT64_MIN, std::int64_t{0}}) {
+    slot_.clock.host_cpu_origin_ns = odd;
+    HostCpu::FollowOrigin(thread_);
+  }
+  EXPECT_EQ(thread_.metered.page_origin_ns, kWay + 2 * kMs);
+}
+
+TEST_F(HostCpuTest, WhatItsProcessWritesMeanwhileDoesNotChangeWhatItsRunHasComeTo) {
+  WritePage();
+  cpu_.Dispatch(thread_);
+  cpu_.Start(thread_, false);
+  slot_.clock.executed_adjust += 300;
+  cpu_.Woke();
+  shm::ClockPage page;
+  shm::CopyPage(slot_.clock, &page);
+  slot_.clock.base_cpu_ns = slot_.clock.base_time_ns = INT64_MAX;
+  cpu_.End(thread_, clock_, &page);
+  EXPECT_LT(shm::ReadClockAt(page, cpu_.stop_tsc()).time_ns, 60 * kMs);
+  EXPECT_EQ(thread_.metered.page, &slot_.clock);
 }
 
 TEST_F(HostCpuTest, AClockThatItsProcessHasOverwrittenIsNotReckonedWith) {
@@ -145,7 +186,7 @@ TEST_F(HostCpuTest, AnIdealThreadsClockStandsWhileItComputes) {
   cpu_.Start(thread_, false);
   shm::ClockReading read = shm::ReadClockAt(slot_.clock, __rdtsc() + 1'000'000'000);
   EXPECT_EQ(read.time_ns, 50 * kMs);
-  cpu_.ChargeCall(thread_, VirtualNs(3 * kMs));
+  cpu_.ChargeCall(thread_, VirtualNs(3 * kMs), &slot_.clock);
   read = shm::ReadClockAt(slot_.clock, __rdtsc());
   EXPECT_EQ(read.time_ns, 50 * kMs);
 }

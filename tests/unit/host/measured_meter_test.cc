@@ -157,7 +157,29 @@ TEST_F(MeasuredMeterTest, WhatItFindsStolenItMayTakeOut) {
   page_.last_check_tsc = tsc;
   End(tsc);
   EXPECT_EQ(ClockAt(tsc), kStart + 5 * kMs);
-  EXPECT_EQ(asked_, 0);
+}
+
+TEST_F(MeasuredMeterTest, ThatItHasAskedItsCpuClockIsNotBelievedForLong) {
+  std::uint64_t tsc = kBegun;
+  for (int i = 0; i < 100; ++i, tsc += kTicksPerMs) {
+    Dispatch(tsc);
+    host_cpu_ns_ += 200 * kUs;
+    // It has computed nothing, as it says.
+    page_.executed_adjust = shm::PackAdjust(page_.executed_adjust.load(), -200 * kUs);
+    page_.last_check_tsc = tsc + 200 * kTicksPerUs;
+    End(tsc + 200 * kTicksPerUs);
+  }
+  EXPECT_GT(charged_ns_, 19 * kMs);
+  EXPECT_LT(asked_, 20);
+}
+
+TEST_F(MeasuredMeterTest, NorIsThatItHasStoppedAtOnce) {
+  for (int i = 0; i < 202; ++i) {
+    Dispatch(kBegun);
+    host_cpu_ns_ += 200 * kUs;
+    End(kBegun);
+  }
+  EXPECT_EQ(charged_ns_, 202 * 200 * kUs);
 }
 
 TEST_F(MeasuredMeterTest, LearnsHowLateTimersAre) {

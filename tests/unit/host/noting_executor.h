@@ -13,13 +13,16 @@ namespace tcs {
 class NotingExecutor final : public Executor {
  public:
   void LetRun(pid_t tid) override { Note("run", tid); }
-  void Hold(pid_t tid) override { Note("hold", tid); }
+  void Hold(pid_t tid) override {
+    Note("hold", tid);
+    if (holds) holds(tid);
+  }
   void LetKernelFinish(pid_t tid) override { Note("finish", tid); }
   void LetGo(pid_t tid) override {
     if (lets_go) lets_go(tid);
   }
 
-  std::function<void(pid_t)> lets_go;  // asked in that very instant; may be null
+  std::function<void(pid_t)> lets_go, holds;  // asked in that very instant; may be null
 
   // Since it was last asked.
   std::vector<std::string> Told() { return std::exchange(told_, {}); }

@@ -36,7 +36,7 @@ class SlotCheckTest : public testing::Test {
   std::string Fixed() { return Found(fixed_); }
 
   std::string Found(const SlotCheck& check) {
-    const char* what = check.WhatIsImpossible(task_);
+    const char* what = check.WhatIsImpossible(task_, page());
     return what == nullptr ? "" : what;
   }
 
