@@ -98,8 +98,8 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
     grant.counts_work |= shm::kBeginsInCall;
   }
   grant.NoteLimits();
-  // One that computes on meanwhile reads again once there is another number; and it goes to its
-  // gate rather than read what is half written, for it has no horizon before it starts.
+  // One that computes on meanwhile goes to its gate rather than read what is half written: it has
+  // no horizon before it starts. A reading that has begun is repeated, for there is another number.
   const std::int64_t added_ns = ChargedUndispatched(task);
   ++task.dispatches;
   page.executed_adjust.store(shm::PackAdjust(task.DispatchWord(), added_ns));
@@ -224,7 +224,11 @@ void Engine::Settle(Task& task) {
     return;
   }
   MeteredThread& metered = task.metered;
+  const bool ends = run_.turn.trapped.has_value() && IsEnd(*run_.turn.trapped);
+  if (ends) metered.AuditAtEnd();
   host_cpu_.End(task, CpuClockOf(task), &page);
+  // What is charged here the thread's own word does not have.
+  task.settled_adjust_ns = shm::AdjustValue(page.executed_adjust.load());
   // The shim counts and charges the calls that it sees, whatever the C library calls for it.
   const bool made_unseen_call = run_.turn.trapped.has_value() &&
                                 run_.turn.trapped->number != SYS_exit && slot.signals.load() == 0;
@@ -247,6 +251,7 @@ void Engine::Settle(Task& task) {
       .horizon = run_.turn.horizon(),
       .reached = on_robot(reading.time_ns),
       .shown = on_robot(shm::ShownTime(page, reading)),
+      .most_ours = metered.OnRobot(metered.MostExchange()),
       .is_preempted = run_.turn.timed_out && (!run_.turn.notified || run_.turn.is_sent_to_gate),
       .credit = -task.debt,
       .in_steps = task.metered.is_watched};
@@ -257,7 +262,6 @@ void Engine::Settle(Task& task) {
   const auto [progress, debt, ours] = SettleRun(run);
   metered.host_origin_ns += metered.OnHost(ours).ns();
   const VirtualDuration charged = std::max(VirtualDuration(), VirtualNs(reading.cpu_ns) - ours);
-  task.settled_adjust_ns = shm::AdjustValue(reading.executed_word);
   const VirtualDuration executed = std::max(VirtualDuration(), charged - task.charged);
   const HostDuration host = metered.OnHost(executed);
   run_.report.client_ns += host.ns();

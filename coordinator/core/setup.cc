@@ -59,7 +59,7 @@ std::string Engine::Prepare() {
   state_link_.Does(Doing::kPrepares, __rdtsc());
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
-  if (!run_.IsFixed() && !IsHostsTscInvariant()) {
+  if (!run_.IsFixed() && KindOfHostsTsc() == TscKind::kNoClock) {
     return "this processor's TSC changes its rate or stops, and by it programs would be charged; "
            "use "
            "a machine whose /proc/cpuinfo shows constant_tsc and nonstop_tsc, or `--accounting "

@@ -89,7 +89,15 @@ Finding JudgeTrap(int error) {
 
 Finding JudgeTsc(const std::string& cpuinfo, const std::string& clocksource) {
   const std::string source = clocksource.substr(0, clocksource.find('\n'));
-  if (!IsTscInvariant(cpuinfo)) {
+  const TscKind kind = KindOfTsc(cpuinfo);
+  if (kind == TscKind::kOfGuest) {
+    return {
+        "invariant TSC", Verdict::kWarning,
+        "its rate is constant, but this hypervisor does not say that it never stops",
+        "have the guest's processor show nonstop_tsc (QEMU: `-cpu host,+invtsc`), or see that the "
+        "host's is so"};
+  }
+  if (kind == TscKind::kNoClock) {
     return {"invariant TSC", Verdict::kMissing, "this processor's TSC changes its rate or stops",
             "use a machine whose /proc/cpuinfo shows constant_tsc and nonstop_tsc; `--accounting "
             "fixed` needs no TSC"};

@@ -17,7 +17,9 @@ namespace {
 constexpr std::uint64_t kLongTicks = 300'000;
 
 // What ways out of gates have not taken others of the thread's may take, but not for ever.
-constexpr VirtualDuration kMostWays = VirtualDuration::Milliseconds(2);
+constexpr HostDuration kMostWays = HostDuration::Milliseconds(2);
+// Signals are let through again on the way.
+constexpr HostDuration kLettingSignals = HostDuration::Microseconds(2);
 
 // While it lives a thread's meter works on another page.
 class OnPage {
@@ -46,7 +48,7 @@ void HostCpu::Dispatch(HostThread& thread) {
   if (thread.slot_memory != nullptr) {
     thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = __rdtsc();
   }
-  AllowWay(thread);
+  thread.metered.can_be_audited = true;
   active_.Dispatch(thread);
   from_gate_ = std::exchange(thread.parked, false);
   detector_.Arm();
@@ -76,6 +78,9 @@ void HostCpu::Start(HostThread& thread, bool is_silent) {
 
 void HostCpu::StartBeside(HostThread& thread, std::uint64_t tsc) {
   AllowWay(thread);
+  // When its turn ends it may not have come to its gate there: only then does the kernel tell what
+  // it has computed.
+  thread.metered.can_be_audited = false;
   MeterOf(thread).Begin(thread.metered, tsc, true, false);
   // What a switch takes there is not known, nor counted: the clock begins behind it. Nor is
   // anything to be learnt from it of switches here.
@@ -101,30 +106,46 @@ void HostCpu::Continue(HostThread& thread) {
 }
 
 // What the thread has taken out itself moved its origin; and it may have become another one
-// meanwhile.
+// meanwhile. What is found stolen here the thread does not find again: where it runs on
+// undispatched it goes on with the clock that it has.
 void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock, shm::ClockPage* page) {
   const OnPage on_copy(thread.metered, page);
   FollowOrigin(thread);
-  const std::int64_t stolen_ns = page->stolen_ns.load(std::memory_order_relaxed);
+  std::uint64_t word = page->executed_adjust.load();
+  const std::int64_t stolen_ns = page->stolen_ns.load();
   MeterOf(thread).End(thread.metered, stop_tsc_, clock);
-  const std::int64_t more_ns = page->stolen_ns.load(std::memory_order_relaxed) - stolen_ns;
-  thread.slot_memory->clock.stolen_ns.fetch_add(more_ns, std::memory_order_relaxed);
+  const std::uint64_t corrected = page->executed_adjust.load();
+  shm::ClockPage& own = thread.slot_memory->clock;
+  if (corrected == word || !own.executed_adjust.compare_exchange_strong(word, corrected)) return;
+  own.last_check_tsc.store(page->last_check_tsc.load());
+  own.stolen_ns.fetch_add(page->stolen_ns.load() - stolen_ns);
 }
 
-void HostCpu::AllowWay(HostThread& thread, VirtualDuration most) {
-  VirtualDuration& ways = thread.metered.most_ways;
+void HostCpu::AllowWay(HostThread& thread) {
+  HostDuration& ways = thread.metered.most_ways;
+  const HostDuration most = thread.metered.MostExchange() + kLettingSignals;
   ways = std::max({ways, most, std::min(ways + most, kMostWays)});
 }
 
+void HostCpu::AllowAttach(HostThread& thread) {
+  MeteredThread& metered = thread.metered;
+  const HostDuration most =
+      std::max(HostNs(shm::kMostAttachNs), metered.OnHost(VirtualNs(shm::kMostAttachNs)));
+  metered.most_ways = std::max(metered.most_ways, most);
+}
+
+// Without levels the thread may run, and move it on meanwhile: its page is left alone as long as
+// what it says can be.
 void HostCpu::FollowOrigin(HostThread& thread) {
   MeteredThread& metered = thread.metered;
+  if (!metered.has_origin()) return;
   shm::ClockPage& page = *metered.page;
-  const HostDuration moved = std::clamp(HostNs(metered.OriginMovedOn(page)), HostDuration(),
-                                        metered.OnHost(metered.most_ways));
+  const HostDuration said = HostNs(metered.OriginMovedOn(page));
+  const HostDuration moved = std::clamp(said, HostDuration(), metered.most_ways);
   metered.page_origin_ns += moved.ns();
   metered.host_origin_ns += moved.ns();
-  page.host_cpu_origin_ns = metered.page_origin_ns;
-  metered.most_ways -= std::min(metered.most_ways, metered.OnRobot(moved));
+  metered.most_ways -= moved;
+  if (moved != said) page.host_cpu_origin_ns = metered.page_origin_ns;
 }
 
 VirtualDuration HostCpu::Uncharged(const HostThread& thread, VirtualDuration charged,
@@ -152,6 +173,7 @@ HostDuration HostCpu::TimeToLook(HostThread& thread, ProgramTime horizon) {
 }
 
 Meter::Found HostCpu::Look(HostThread& thread, ProgramTime horizon, const Meter::CpuClock& clock) {
+  FollowOrigin(thread);
   return MeterOf(thread).Look(thread.metered, stop_tsc_, horizon, clock);
 }
 

@@ -11,7 +11,7 @@
 //   loop
 //     Woke()                the coordinator is back, the thread stopped
 //     Continue(thread)      or only interrupted: its clock goes on, and the coordinator sleeps
-//   End(thread)             its clock page says what its run has come to
+//   End(thread, page)       a copy of its clock page says what its run has come to
 //
 // Several of these know nothing of each other. For the coordinator's thread only.
 #pragma once
@@ -90,10 +90,10 @@ class HostCpu {
   // What the thread has moved the origin of its CPU clock by, on its ways out of gates, is its own
   // from now on: what these can have taken, that is.
   static void FollowOrigin(HostThread& thread);
-  // It goes out of a gate next, and may say what that took. Signals are let through again on that
-  // way, too.
-  static constexpr VirtualDuration kMostWay = VirtualNs(shm::kMostExchangeNs + 2'000);
-  static void AllowWay(HostThread& thread, VirtualDuration most = kMostWay);
+  // It goes out of a gate next, and may say what that took.
+  static void AllowWay(HostThread& thread);
+  // It goes out of its first one, and has had a porter made on the way.
+  static void AllowAttach(HostThread& thread);
   // What a thread has computed since it was last charged `charged`, by its CPU clock: while it was
   // not dispatched.
   static VirtualDuration Uncharged(const HostThread& thread, VirtualDuration charged,

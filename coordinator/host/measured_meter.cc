@@ -13,10 +13,8 @@ namespace {
 // More than what clocks and the coordinator's estimates differ by in one dispatch.
 constexpr std::int64_t kSlackNs = 10'000'000;
 
-// A thread asks its own CPU clock, and says that it has; and beside the coordinator it says when it
-// stopped. After so much it is not believed.
+// A thread asks its own CPU clock, and says that it has. After so much it is not believed.
 constexpr HostDuration kAuditAfter = HostDuration::Milliseconds(1);
-constexpr int kTurnsToAudit = 100;
 
 // More than it has run was taken out of its clock, as stolen: by its program, or because the host's
 // clocks do not agree.
@@ -58,7 +56,11 @@ HostDuration MeasuredMeter::TimeToLook(MeteredThread& thread, std::uint64_t tsc,
 Meter::Found MeasuredMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
                                  const CpuClock& clock) {
   timer_.Expired(thread.asked.ns(), NsBetween(thread.asked_tsc, tsc));
-  CheckIfDue(thread, tsc, clock);
+  if (IsAuditDue(thread, tsc)) {
+    Check(thread, tsc, clock);
+  } else {
+    CheckIfDue(thread, tsc, clock);
+  }
   const ProgramTime now = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
   return IsAtHorizon(now, OwnTime(thread.page->base_time_ns), horizon, thread.is_watched)
              ? Found::kAtHorizon
@@ -104,7 +106,6 @@ void MeasuredMeter::Check(MeteredThread& thread, std::uint64_t tsc, const CpuClo
   }
   thread.unchecked_runs = {};
   thread.unaudited_ticks = 0;
-  thread.unaudited_turns = 0;
   shm::RemoveStolen(page, reading, cpu_ns);
 }
 
@@ -113,11 +114,16 @@ void MeasuredMeter::CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const C
   if (shm::IsCheckDue(page, shm::ReadClockAt(page, tsc))) Check(thread, tsc, clock);
 }
 
+// So much has the thread run without being asked by the coordinator.
+bool MeasuredMeter::IsAuditDue(const MeteredThread& thread, std::uint64_t tsc) const {
+  if (!thread.can_be_audited) return false;
+  const std::uint64_t ran = thread.unaudited_ticks + (tsc - thread.page->base_tsc);
+  return static_cast<double>(ran) > static_cast<double>(kAuditAfter.ns()) * rate_.ticks_per_ns;
+}
+
 void MeasuredMeter::End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
+  const bool is_audited = IsAuditDue(thread, tsc);
   thread.unaudited_ticks += tsc - thread.page->base_tsc;
-  const bool is_audited = ++thread.unaudited_turns > kTurnsToAudit ||
-                          static_cast<double>(thread.unaudited_ticks) >
-                              static_cast<double>(kAuditAfter.ns()) * rate_.ticks_per_ns;
   if (thread.is_watched || is_audited || HasTakenTooMuch(*thread.page, tsc)) {
     Check(thread, tsc, clock);
   } else {

@@ -36,6 +36,7 @@ class MeasuredMeter : public Meter {
   }
 
  private:
+  bool IsAuditDue(const MeteredThread& thread, std::uint64_t tsc) const;
   void CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock);
 
   const TscRate rate_;

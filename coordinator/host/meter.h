@@ -9,6 +9,7 @@
 // one processor of the host, so that each processor has a meter of its own. Not thread-safe.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -43,10 +44,10 @@ struct MeteredThread {
   // Others look at what it does in short steps: its CPU clock is asked after each turn.
   bool is_watched = false;
   // What its ways out of gates may still have taken: it says so itself, and it is not charged.
-  VirtualDuration most_ways;
+  HostDuration most_ways;
   std::uint64_t unchecked_ticks = 0;  // of TSC run since its CPU clock was last asked
-  std::uint64_t unaudited_ticks = 0;  // the same, by the coordinator,
-  int unaudited_turns = 0;            // and in so many turns
+  std::uint64_t unaudited_ticks = 0;  // the same, by the coordinator
+  bool can_be_audited = true;         // in this turn: where it stops it stands still
   std::uint64_t checked_tsc = 0;      // what its page said of that at its dispatch
   UncheckedRuns unchecked_runs;       // by the coordinator
   std::uint64_t asked_tsc = 0;        // when it was last said how long it may run,
@@ -69,6 +70,9 @@ struct MeteredThread {
                                      static_cast<std::uint64_t>(page_origin_ns));
   }
 
+  // It is asked at the end of this turn, which is its last.
+  void AuditAtEnd() { unaudited_ticks = std::uint64_t{1} << 62; }
+
   bool has_origin() const { return host_origin_ns != kNoOrigin; }
 
   // Host time and virtual time are made of each other here only.
@@ -81,6 +85,10 @@ struct MeteredThread {
   // What it is to be charged in all once its CPU clock says `cpu_ns`.
   VirtualDuration ChargeAt(std::int64_t cpu_ns) const {
     return OnRobot(HostNs(cpu_ns - host_origin_ns));
+  }
+  // What one exchange may take. The shim reckons in virtual time.
+  HostDuration MostExchange() const {
+    return std::max(HostNs(shm::kMostExchangeNs), OnHost(VirtualNs(shm::kMostExchangeNs)));
   }
   // Virtual nanoseconds per one of the host's, times 2^32.
   std::uint64_t NsPerHostNsQ32() const { return static_cast<std::uint64_t>(4294967296.0 / speed); }
@@ -133,7 +141,7 @@ class Meter {
   // Takes out of the thread's clock what was stolen until `tsc`, as its CPU clock tells.
   virtual void Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) = 0;
 
-  // The thread has stopped at `tsc`. After that its page says what its run has come to.
+  // The thread has stopped at `tsc`. After that the page says what its run has come to.
   virtual void End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) = 0;
 
   // The thread has made a system call that its shim knows nothing of.

@@ -26,17 +26,19 @@ std::string FlagsOf(std::string_view cpuinfo) {
 
 }  // namespace
 
-bool IsTscInvariant(std::string_view cpuinfo) {
+TscKind KindOfTsc(std::string_view cpuinfo) {
   const std::string flags = FlagsOf(cpuinfo);
-  return HasFlag(flags, "constant_tsc") && HasFlag(flags, "nonstop_tsc");
+  if (!HasFlag(flags, "constant_tsc")) return TscKind::kNoClock;
+  if (HasFlag(flags, "nonstop_tsc")) return TscKind::kClock;
+  return HasFlag(flags, "hypervisor") ? TscKind::kOfGuest : TscKind::kNoClock;
 }
 
-bool IsHostsTscInvariant() {
+TscKind KindOfHostsTsc() {
   std::ifstream file("/proc/cpuinfo");
   std::string text(kFirstProcessor, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
-  return FlagsOf(text).empty() || IsTscInvariant(text);
+  return FlagsOf(text).empty() ? TscKind::kClock : KindOfTsc(text);
 }
 
 }  // namespace tcs

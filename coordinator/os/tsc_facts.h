@@ -7,10 +7,16 @@
 
 namespace tcs {
 
-// By /proc/cpuinfo, or its beginning, in which the first processor is whole.
-bool IsTscInvariant(std::string_view cpuinfo);
+enum class TscKind {
+  kClock,    // it keeps its rate, and never stops
+  kOfGuest,  // it keeps its rate; that it never stops a hypervisor need not say
+  kNoClock,
+};
 
-// Of this host. Where it cannot be read the TSC is taken for invariant.
-bool IsHostsTscInvariant();
+// By /proc/cpuinfo, or its beginning, in which the first processor is whole.
+TscKind KindOfTsc(std::string_view cpuinfo);
+
+// Of this host. Where it cannot be read the TSC is taken for a clock.
+TscKind KindOfHostsTsc();
 
 }  // namespace tcs

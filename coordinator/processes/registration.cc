@@ -125,6 +125,8 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   TakeEndWord(task, hello.end_word);
   task.slot_memory = &process.link->SlotAt(task.slot);
   task.metered.page = &task.slot_memory->clock;
+  HostCpu::AllowWay(task);
+  if (porters_end) HostCpu::AllowAttach(task);
   if (!run_.turn.IsOf(task)) parts_.cpu.active().HoldUnknown(task);
   if (hello.tid == hello.pid) {
     process.is_bare = false;
@@ -172,7 +174,7 @@ void Registration::GivePlace(Task& task, Moment moment, std::uint64_t end_word, 
   task.parked = false;
   // What it computes from here on is its own, before its first dispatch, too.
   task.metered.host_origin_ns = is_newborn ? 0 : HostClockOf(task);
-  HostCpu::AllowWay(task, VirtualNs(shm::kMostAttachNs));
+  HostCpu::AllowWay(task);
 }
 
 // The thread that registers: known already (a client, an announced child), a further thread of a

@@ -16,9 +16,9 @@ client_pid() { ps -o pid=,comm= --ppid "$(coordinator_pid)" | awk '$2 == "sh" {p
 for victim in tcsim_pid:KILL keeper_pid:KILL coordinator_pid:KILL client_pid:KILL tcsim_pid:TERM tcsim_pid:HUP; do
   "$tcsim" exec -- sh -c "$program" 2>/dev/null &
   tcsim_pid=$!
-  # The client and its child, both: tcsim's own processes have their words in their command lines, too.
+  # The client's child executes its own command: what hands over descriptors has the client's for a moment, and its name.
   for _ in $(seq 1500); do
-    (($(ps -eo comm=,args= | grep -c "^sh .*# $mark") >= 2)) && break
+    pgrep -f "^sh -c while :; do :; done # $mark" >/dev/null && break
     sleep 0.1
   done
   kill "-${victim#*:}" "$(${victim%:*})"

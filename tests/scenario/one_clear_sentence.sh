@@ -81,7 +81,7 @@ if mkdir "$out/small" && mount -t tmpfs -o size=64k none "$out/small" 2>/dev/nul
   refused 'cannot be made: .*No space left.*--out' "$tcsim" run "$out/small.yaml" --record --out "$out/small/run"
 fi
 # A processor whose TSC is no clock.
-sed 's/nonstop_tsc//' /proc/cpuinfo >"$out/cpuinfo"
+sed 's/nonstop_tsc//; s/constant_tsc//' /proc/cpuinfo >"$out/cpuinfo"
 elsewhere=(unshare -m bash -c 'mount --bind "$0" /proc/cpuinfo && exec "$@"' "$out/cpuinfo")
 if "${elsewhere[@]}" true 2>/dev/null; then
   refused 'TSC changes its rate or stops.*`--accounting fixed`' "${elsewhere[@]}" "$tcsim" run "$out/small.yaml" --out "$out/tsc"

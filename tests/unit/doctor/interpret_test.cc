@@ -55,6 +55,7 @@ TEST(Doctor, WithoutATrapItSaysWhatThatMeans) {
 TEST(Doctor, TheTscMustBeInvariant) {
   EXPECT_EQ(JudgeTsc("flags : fpu constant_tsc nonstop_tsc", "tsc\n").verdict, Verdict::kOk);
   EXPECT_EQ(JudgeTsc("flags : fpu constant_tsc", "tsc\n").verdict, Verdict::kMissing);
+  EXPECT_EQ(JudgeTsc("flags : constant_tsc hypervisor", "tsc\n").verdict, Verdict::kWarning);
   EXPECT_EQ(JudgeTsc("flags : constant_tsc nonstop_tsc_s3", "tsc\n").verdict, Verdict::kMissing);
   EXPECT_EQ(JudgeTsc("flags : constant_tsc nonstop_tsc", "hpet\n").verdict, Verdict::kWarning);
 }

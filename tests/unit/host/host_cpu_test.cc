@@ -133,8 +133,9 @@ TEST_F(HostCpuTest, WhatItsShimHasTakenOutStaysOut) {
 }
 
 TEST_F(HostCpuTest, ItsShimTakesOutNoMoreThanItsWaysTake) {
+  constexpr std::int64_t kWay = 52'000;
   WritePage();
-  constexpr std::int64_t kWay = HostCpu::kMostWay.ns();
+  thread_.metered.host_origin_ns = 0;
   slot_.clock.host_cpu_origin_ns = kMs;
   HostCpu::AllowWay(thread_);
   HostCpu::FollowOrigin(thread_);
@@ -152,17 +153,40 @@ TEST_F(HostCpuTest, ItsShimTakesOutNoMoreThanItsWaysTake) {
   EXPECT_EQ(thread_.metered.page_origin_ns, kWay + 2 * kMs);
 }
 
+TEST_F(HostCpuTest, OnASlowComputerAWayTakesAsLong) {
+  thread_.metered.speed = 0.01;
+  WritePage();
+  thread_.metered.host_origin_ns = 0;
+  HostCpu::AllowWay(thread_);
+  slot_.clock.host_cpu_origin_ns = 40'000;
+  HostCpu::FollowOrigin(thread_);
+  EXPECT_EQ(thread_.metered.host_origin_ns, 40'000);
+}
+
+TEST_F(HostCpuTest, BeforeItHasAnOriginNoneIsFollowed) {
+  WritePage();
+  HostCpu::AllowWay(thread_);
+  slot_.clock.host_cpu_origin_ns = 1'000;
+  HostCpu::FollowOrigin(thread_);
+  EXPECT_FALSE(thread_.metered.has_origin());
+}
+
 TEST_F(HostCpuTest, WhatItsProcessWritesMeanwhileDoesNotChangeWhatItsRunHasComeTo) {
   WritePage();
+  thread_.metered.host_origin_ns = 0;
+  thread_.metered.is_watched = true;  // its CPU clock is asked
   cpu_.Dispatch(thread_);
   cpu_.Start(thread_, false);
-  slot_.clock.executed_adjust += 300;
   cpu_.Woke();
   shm::ClockPage page;
   shm::CopyPage(slot_.clock, &page);
   slot_.clock.base_cpu_ns = slot_.clock.base_time_ns = INT64_MAX;
-  cpu_.End(thread_, clock_, &page);
-  EXPECT_LT(shm::ReadClockAt(page, cpu_.stop_tsc()).time_ns, 60 * kMs);
+  slot_.clock.executed_adjust += 300;
+  const std::uint64_t word = slot_.clock.executed_adjust.load();
+  cpu_.End(
+      thread_, [] { return 7 * kMs; }, &page);
+  EXPECT_EQ(shm::ReadClockAt(page, cpu_.stop_tsc()).cpu_ns, 7 * kMs);
+  EXPECT_EQ(slot_.clock.executed_adjust.load(), word);
   EXPECT_EQ(thread_.metered.page, &slot_.clock);
 }
 

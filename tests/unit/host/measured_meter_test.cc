@@ -151,12 +151,12 @@ TEST_F(MeasuredMeterTest, WhoTakesOutMoreThanItHasRunIsChargedWhatItsCpuClockSay
 
 TEST_F(MeasuredMeterTest, WhatItFindsStolenItMayTakeOut) {
   Dispatch(kBegun);
-  const std::uint64_t tsc = kBegun + 20 * kTicksPerMs;
-  host_cpu_ns_ += 5 * kMs;
-  page_.executed_adjust = shm::PackAdjust(page_.executed_adjust.load(), -15 * kMs);
+  const std::uint64_t tsc = kBegun + 900 * kTicksPerUs;
+  page_.executed_adjust = shm::PackAdjust(page_.executed_adjust.load(), -500 * kUs);
   page_.last_check_tsc = tsc;
   End(tsc);
-  EXPECT_EQ(ClockAt(tsc), kStart + 5 * kMs);
+  EXPECT_EQ(ClockAt(tsc), kStart + 400 * kUs);
+  EXPECT_EQ(asked_, 0);
 }
 
 TEST_F(MeasuredMeterTest, ThatItHasAskedItsCpuClockIsNotBelievedForLong) {
@@ -173,13 +173,34 @@ TEST_F(MeasuredMeterTest, ThatItHasAskedItsCpuClockIsNotBelievedForLong) {
   EXPECT_LT(asked_, 20);
 }
 
-TEST_F(MeasuredMeterTest, NorIsThatItHasStoppedAtOnce) {
-  for (int i = 0; i < 202; ++i) {
-    Dispatch(kBegun);
-    host_cpu_ns_ += 200 * kUs;
-    End(kBegun);
-  }
-  EXPECT_EQ(charged_ns_, 202 * 200 * kUs);
+TEST_F(MeasuredMeterTest, NorIsItInTheMidstOfATurn) {
+  Dispatch(kBegun);
+  const std::uint64_t tsc = kBegun + 2 * kTicksPerMs;
+  host_cpu_ns_ += 2 * kMs;
+  page_.executed_adjust = shm::PackAdjust(page_.executed_adjust.load(), -2 * kMs);
+  page_.last_check_tsc = tsc;
+  meter_.TimeToLook(thread_, kBegun, OwnTime(kStart + kMs));
+  EXPECT_EQ(meter_.Look(thread_, tsc, OwnTime(kStart + kMs), clock_), Meter::Found::kAtHorizon);
+}
+
+TEST_F(MeasuredMeterTest, NorIsItInItsLastTurn) {
+  Dispatch(kBegun);
+  const std::uint64_t tsc = kBegun + 300 * kTicksPerUs;
+  host_cpu_ns_ += 300 * kUs;
+  page_.executed_adjust = shm::PackAdjust(page_.executed_adjust.load(), -300 * kUs);
+  page_.last_check_tsc = tsc;
+  thread_.AuditAtEnd();
+  End(tsc);
+  EXPECT_EQ(charged_ns_, 300 * kUs);
+}
+
+TEST_F(MeasuredMeterTest, WhoMayStillRunIsNotAsked) {
+  Dispatch(kBegun);
+  const std::uint64_t tsc = kBegun + 5 * kTicksPerMs;
+  page_.last_check_tsc = tsc;
+  thread_.can_be_audited = false;
+  End(tsc);
+  EXPECT_EQ(asked_, 0);
 }
 
 TEST_F(MeasuredMeterTest, LearnsHowLateTimersAre) {
@@ -189,6 +210,7 @@ TEST_F(MeasuredMeterTest, LearnsHowLateTimersAre) {
   for (int i = 0; i < 100; ++i) {
     const std::int64_t ns = meter_.TimeToLook(thread_, kBegun, OwnTime(kStart + 2 * kMs)).ns();
     const auto late = static_cast<std::uint64_t>(2 * (ns + 40 * kUs));
+    host_cpu_ns_ = 700 * kMs + ns + 40 * kUs;
     meter_.Look(thread_, kBegun + late, OwnTime(kStart + 2 * kMs), clock_);
   }
   EXPECT_NEAR(

@@ -12,17 +12,22 @@ std::string CpuinfoWith(const std::string& flags) {
 }
 
 TEST(TscFacts, AClockIsATscThatKeepsItsRateAndNeverStops) {
-  EXPECT_TRUE(IsTscInvariant(CpuinfoWith("fpu constant_tsc rep_good nonstop_tsc")));
-  EXPECT_TRUE(IsTscInvariant(CpuinfoWith("nonstop_tsc constant_tsc sse")));
-  EXPECT_FALSE(IsTscInvariant(CpuinfoWith("fpu constant_tsc")));
-  EXPECT_FALSE(IsTscInvariant(CpuinfoWith("fpu nonstop_tsc")));
-  EXPECT_FALSE(IsTscInvariant(CpuinfoWith("fpu xconstant_tsc nonstop_tsc_s3")));
-  EXPECT_FALSE(IsTscInvariant("nonstop_tsc constant_tsc"));
+  EXPECT_EQ(KindOfTsc(CpuinfoWith("fpu constant_tsc rep_good nonstop_tsc")), TscKind::kClock);
+  EXPECT_EQ(KindOfTsc(CpuinfoWith("nonstop_tsc constant_tsc sse")), TscKind::kClock);
+  EXPECT_EQ(KindOfTsc(CpuinfoWith("fpu constant_tsc")), TscKind::kNoClock);
+  EXPECT_EQ(KindOfTsc(CpuinfoWith("fpu nonstop_tsc hypervisor")), TscKind::kNoClock);
+  EXPECT_EQ(KindOfTsc(CpuinfoWith("fpu xconstant_tsc nonstop_tsc_s3")), TscKind::kNoClock);
+  EXPECT_EQ(KindOfTsc("nonstop_tsc constant_tsc"), TscKind::kNoClock);
+}
+
+TEST(TscFacts, AHypervisorNeedNotSayThatItNeverStops) {
+  EXPECT_EQ(KindOfTsc(CpuinfoWith("constant_tsc hypervisor")), TscKind::kOfGuest);
+  EXPECT_EQ(KindOfTsc(CpuinfoWith("constant_tsc hypervisor nonstop_tsc")), TscKind::kClock);
 }
 
 TEST(TscFacts, OnlyTheFirstProcessorNeedBeWhole) {
   const std::string first = CpuinfoWith("constant_tsc nonstop_tsc");
-  EXPECT_TRUE(IsTscInvariant(first + "processor\t: 1\nfla"));
+  EXPECT_EQ(KindOfTsc(first + "processor\t: 1\nfla"), TscKind::kClock);
 }
 
 }  // namespace
