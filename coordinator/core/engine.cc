@@ -442,6 +442,7 @@ RunReport Engine::Run() {
       if (!Step()) break;
       if (step % kStepsBetweenLooksAtSignals == 0 && HasSignal()) OnSignal({}, 0, {});
     }
+    if (!reached_end_ && run_.report.error.empty()) world_.LetLastCommandsAct(Furthest());
   } catch (const DynamicsInterrupted&) {
     OnSignal({}, 0, {});
   } catch (const DynamicsError& error) {

@@ -298,6 +298,12 @@ bool World::Advance(VirtualTime limit) {
   return sent;
 }
 
+void World::LetLastCommandsAct(VirtualTime end) {
+  if (!present()) return;
+  PassOnSentUntil(end);
+  commands_.ActUntil(end);
+}
+
 // The dynamics integrate what somebody reads, and nobody does before the next stop. Others may
 // still be woken earlier than `now`, but no further back than the drift bound.
 void World::Lead(VirtualTime now, VirtualTime to) {

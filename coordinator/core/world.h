@@ -78,6 +78,8 @@ class World {
   // Advances to the earliest of `limit` and the next stop, and carries out what is due there. No
   // command for an earlier time comes any more. True if something was sent.
   bool Advance(VirtualTime limit);
+  // All programs have ended by then: what they have commanded acts, whoever sees it.
+  void LetLastCommandsAct(VirtualTime end);
   // Goes on to `to`, at most the next stop, while somebody acts at `now` whose commands are
   // still to come. Each is applied at its time.
   void Lead(VirtualTime now, VirtualTime to);
