@@ -56,11 +56,7 @@ HostDuration MeasuredMeter::TimeToLook(MeteredThread& thread, std::uint64_t tsc,
 Meter::Found MeasuredMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
                                  const CpuClock& clock) {
   timer_.Expired(thread.asked.ns(), NsBetween(thread.asked_tsc, tsc));
-  if (IsAuditDue(thread, tsc)) {
-    Check(thread, tsc, clock);
-  } else {
-    CheckIfDue(thread, tsc, clock);
-  }
+  CheckIfDue(thread, tsc, clock);
   const ProgramTime now = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
   return IsAtHorizon(now, OwnTime(thread.page->base_time_ns), horizon, thread.is_watched)
              ? Found::kAtHorizon
