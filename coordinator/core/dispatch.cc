@@ -251,7 +251,7 @@ void Engine::Settle(Task& task) {
       .horizon = run_.turn.horizon(),
       .reached = on_robot(reading.time_ns),
       .shown = on_robot(shm::ShownTime(page, reading)),
-      .most_ours = metered.OnRobot(metered.MostExchange()),
+      .most_ours = metered.OnRobot(metered.OnEither(shm::kMostExchangeNs)),
       .is_preempted = run_.turn.timed_out && (!run_.turn.notified || run_.turn.is_sent_to_gate),
       .credit = -task.debt,
       .in_steps = task.metered.is_watched};

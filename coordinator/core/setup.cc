@@ -61,8 +61,7 @@ std::string Engine::Prepare() {
   // results are written over.
   if (!run_.IsFixed() && KindOfHostsTsc() == TscKind::kNoClock) {
     return "this processor's TSC changes its rate or stops, and by it programs would be charged; "
-           "use "
-           "a machine whose /proc/cpuinfo shows constant_tsc and nonstop_tsc, or `--accounting "
+           "use a machine whose /proc/cpuinfo shows constant_tsc and nonstop_tsc, or `--accounting "
            "fixed`, which needs no TSC";
   }
   if (std::string error = network_.Open(run_.scenario); !error.empty()) return error;

@@ -20,7 +20,7 @@ class ActiveThreads {
   // The thread is dispatched. The last one is held, unless it is at its gate: there it needs no
   // hold, and has the right already when it is dispatched next.
   void Dispatch(HostThread& thread) {
-    if (last_ != nullptr && last_ != &thread && !last_->parked) Hold(*last_);
+    if (last_ != &thread) HoldLast();
     if (!thread.may_run) LetRun(thread);
     last_ = &thread;
   }

@@ -48,7 +48,6 @@ void HostCpu::Dispatch(HostThread& thread) {
   if (thread.slot_memory != nullptr) {
     thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = __rdtsc();
   }
-  thread.metered.can_be_audited = true;
   active_.Dispatch(thread);
   from_gate_ = std::exchange(thread.parked, false);
   detector_.Arm();
@@ -78,9 +77,6 @@ void HostCpu::Start(HostThread& thread, bool is_silent) {
 
 void HostCpu::StartBeside(HostThread& thread, std::uint64_t tsc) {
   AllowWay(thread);
-  // When its turn ends it may not have come to its gate there: only then does the kernel tell what
-  // it has computed.
-  thread.metered.can_be_audited = false;
   MeterOf(thread).Begin(thread.metered, tsc, true, false);
   // What a switch takes there is not known, nor counted: the clock begins behind it. Nor is
   // anything to be learnt from it of switches here.
@@ -111,6 +107,9 @@ void HostCpu::Continue(HostThread& thread) {
 void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock, shm::ClockPage* page) {
   const OnPage on_copy(thread.metered, page);
   FollowOrigin(thread);
+  // Beside it may not have come to its gate yet: only then does the kernel tell what it has
+  // computed.
+  thread.metered.can_be_audited = !thread.is_beside;
   std::uint64_t word = page->executed_adjust.load();
   const std::int64_t stolen_ns = page->stolen_ns.load();
   MeterOf(thread).End(thread.metered, stop_tsc_, clock);
@@ -123,15 +122,13 @@ void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock, shm::ClockPa
 
 void HostCpu::AllowWay(HostThread& thread) {
   HostDuration& ways = thread.metered.most_ways;
-  const HostDuration most = thread.metered.MostExchange() + kLettingSignals;
+  const HostDuration most = thread.metered.OnEither(shm::kMostExchangeNs) + kLettingSignals;
   ways = std::max({ways, most, std::min(ways + most, kMostWays)});
 }
 
 void HostCpu::AllowAttach(HostThread& thread) {
   MeteredThread& metered = thread.metered;
-  const HostDuration most =
-      std::max(HostNs(shm::kMostAttachNs), metered.OnHost(VirtualNs(shm::kMostAttachNs)));
-  metered.most_ways = std::max(metered.most_ways, most);
+  metered.most_ways = std::max(metered.most_ways, metered.OnEither(shm::kMostAttachNs));
 }
 
 // Without levels the thread may run, and move it on meanwhile: its page is left alone as long as
@@ -159,7 +156,7 @@ VirtualDuration HostCpu::Uncharged(const HostThread& thread, VirtualDuration cha
 
 void HostCpu::TakeOutWayToGate(HostThread& thread, VirtualDuration charged,
                                const Meter::CpuClock& clock) {
-  constexpr HostDuration kMost = HostDuration::Microseconds(50);
+  constexpr HostDuration kMost = HostNs(shm::kMostExchangeNs);
   const HostDuration way = thread.metered.OnHost(Uncharged(thread, charged, clock));
   if (way <= kMost) thread.metered.host_origin_ns += way.ns();
 }

@@ -111,16 +111,14 @@ void MeasuredMeter::CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const C
 }
 
 // So much has the thread run without being asked by the coordinator.
-bool MeasuredMeter::IsAuditDue(const MeteredThread& thread, std::uint64_t tsc) const {
-  if (!thread.can_be_audited) return false;
-  const std::uint64_t ran = thread.unaudited_ticks + (tsc - thread.page->base_tsc);
-  return static_cast<double>(ran) > static_cast<double>(kAuditAfter.ns()) * rate_.ticks_per_ns;
+bool MeasuredMeter::IsAuditDue(const MeteredThread& thread) const {
+  const auto most_ticks = static_cast<double>(kAuditAfter.ns()) * rate_.ticks_per_ns;
+  return thread.can_be_audited && static_cast<double>(thread.unaudited_ticks) > most_ticks;
 }
 
 void MeasuredMeter::End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
-  const bool is_audited = IsAuditDue(thread, tsc);
   thread.unaudited_ticks += tsc - thread.page->base_tsc;
-  if (thread.is_watched || is_audited || HasTakenTooMuch(*thread.page, tsc)) {
+  if (thread.is_watched || IsAuditDue(thread) || HasTakenTooMuch(*thread.page, tsc)) {
     Check(thread, tsc, clock);
   } else {
     CheckIfDue(thread, tsc, clock);

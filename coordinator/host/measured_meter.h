@@ -36,7 +36,7 @@ class MeasuredMeter : public Meter {
   }
 
  private:
-  bool IsAuditDue(const MeteredThread& thread, std::uint64_t tsc) const;
+  bool IsAuditDue(const MeteredThread& thread) const;
   void CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock);
 
   const TscRate rate_;

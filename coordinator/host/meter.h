@@ -86,9 +86,10 @@ struct MeteredThread {
   VirtualDuration ChargeAt(std::int64_t cpu_ns) const {
     return OnRobot(HostNs(cpu_ns - host_origin_ns));
   }
-  // What one exchange may take. The shim reckons in virtual time.
-  HostDuration MostExchange() const {
-    return std::max(HostNs(shm::kMostExchangeNs), OnHost(VirtualNs(shm::kMostExchangeNs)));
+  // So many nanoseconds by the host's clock or by the robot's, by which the shim reckons: whichever
+  // are longer.
+  HostDuration OnEither(std::int64_t ns) const {
+    return std::max(HostNs(ns), OnHost(VirtualNs(ns)));
   }
   // Virtual nanoseconds per one of the host's, times 2^32.
   std::uint64_t NsPerHostNsQ32() const { return static_cast<std::uint64_t>(4294967296.0 / speed); }
