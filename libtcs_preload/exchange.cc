@@ -178,7 +178,7 @@ bool WaitAtGate(shm::ThreadSlot& slot, HandlersBefore handlers, const Charged& c
     std::uint32_t gate = slot.gate.load(std::memory_order_acquire);
     if (gate == shm::kGateOpen || IsShutDown()) {
       if (slot.wake_reason.load(std::memory_order_relaxed) == WakeReason::kCutOff) {
-        DieWithoutCoordinator("it has closed the connection to it");
+        DieWithoutCoordinator("what it says does not arrive (the connection is another file now)");
       }
       if (OnlyCpuClockTells(slot.clock) || RunsBeside(slot)) {
         TakeOutWait(slot.clock, charged, most_ns);

@@ -11,6 +11,7 @@
 #include "libtcs_preload/call_file.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
+#include "libtcs_preload/memory_devices.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/signal_actions.h"
 #include "libtcs_preload/signal_fds.h"
@@ -189,7 +190,8 @@ bool CanWait(int fd, FdKind* kind) {
             : (status.st_mode & S_IFMT) == 0 ? FdKind::kWithoutName
                                              : FdKind::kOther;
   }
-  return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode);
+  return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode) &&
+         !IsMemoryDevice(status);
 }
 
 std::int64_t SocketDeadline(GuestThread& thread, int fd, int option) {

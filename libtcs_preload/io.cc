@@ -15,6 +15,7 @@
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
+#include "libtcs_preload/memory_devices.h"
 #include "libtcs_preload/outside.h"
 #include "libtcs_preload/pieces.h"
 #include "libtcs_preload/random.h"
@@ -80,6 +81,15 @@ ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
   return ToErrno(done);
 }
 
+long ReadOnce(int fd, void* buffer, std::size_t size) {
+  const auto read = [fd](void* to, std::size_t n) {
+    return RawSyscall(SYS_read, fd, Arg(to), static_cast<long>(n));
+  };
+  const long got = read(buffer, size);
+  if (!MayBeCutShort(got, size) || !IsMemoryDevice(fd)) return got;
+  return Completed(buffer, size, got, read);
+}
+
 // `is_beyond`: of such buffers the kernel never waits for anything to come into them.
 template <class Call>
 ssize_t ReadInto(int fd, const iovec* iov, int count, bool is_beyond, Call call) {
@@ -105,8 +115,7 @@ ssize_t ReadInto(int fd, const iovec* iov, int count, bool is_beyond, Call call)
 TCS_EXPORT ssize_t read(int fd, void* buffer, std::size_t size) {
   const iovec iov{buffer, size};
   const bool is_beyond = size == 0 || IsBeyondMemory(buffer, size);
-  return ReadInto(fd, &iov, 1, is_beyond,
-                  [&](int from) { return RawSyscall(SYS_read, from, Arg(buffer), size); });
+  return ReadInto(fd, &iov, 1, is_beyond, [&](int from) { return ReadOnce(from, buffer, size); });
 }
 
 TCS_EXPORT ssize_t __read_chk(int fd, void* buffer, std::size_t size, std::size_t room) {

@@ -10,6 +10,7 @@
 #include "libtcs_preload/descriptor_path.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/memory_devices.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/draws.h"
 
@@ -63,12 +64,13 @@ void RepeatDraws(int fd, const iovec* buffers, std::size_t count, ssize_t size) 
 }
 
 long GetRandom(void* buffer, std::size_t size, unsigned flags) {
-  if (Enter() == nullptr || !g_seeded) {
-    return RawSyscall(SYS_getrandom, Arg(buffer), static_cast<long>(size), flags);
-  }
+  const bool repeats = Enter() != nullptr && g_seeded;
+  const auto draw = [flags](void* to, std::size_t n) {
+    return RawSyscall(SYS_getrandom, Arg(to), static_cast<long>(n), flags);
+  };
   // The kernel judges the arguments, and fills what it can.
-  const long filled = RawSyscall(SYS_getrandom, Arg(buffer), static_cast<long>(size), flags);
-  if (filled > 0) g_draws.Fill(buffer, static_cast<std::size_t>(filled));
+  const long filled = Completed(buffer, size, draw(buffer, size), draw);
+  if (repeats && filled > 0) g_draws.Fill(buffer, static_cast<std::size_t>(filled));
   return filled;
 }
 

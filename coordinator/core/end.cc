@@ -14,7 +14,7 @@ void Engine::EndClients() {
     idle_at_.reset();
     while (!grace_.IsOver() && Step()) {
     }
-    grace_.KillOverdue();
+    if (grace_.KillOverdue()) WaitOutside();
   }
   grace_.WarnOfThoseLeft();
 }

@@ -192,6 +192,10 @@ bool Engine::CutsOff(Task& task) {
     return true;
   }
   shm::ThreadSlot& slot = SlotOf(task);
+  run_.Warn(fmt::format(
+      "thread {} of {} waits for the answer to a notification (kind {}) that has not arrived: its "
+      "program has closed or replaced the connection; it is ended",
+      task.tid, task.process->name, static_cast<int>(slot.note.kind)));
   slot.wake_reason.store(shm::WakeReason::kCutOff);
   OpenGate(task);
   run_.turn.held_looks = 0;

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "coordinator/os/host.h"
+#include "coordinator/tasks/run_clock.h"
 #include "shm/time_values.h"
 
 namespace tcs {
@@ -36,6 +37,7 @@ int Grace::StopSignalOf(const Process& process) const {
 }
 
 void Grace::Begin() {
+  began_ = RunClock::Now();
   LimitRealTime();
   run_.latest = run_.grace_began;
   for (const Process& process : run_.table.processes()) {
@@ -87,19 +89,38 @@ void Grace::RanOut() {
 }
 
 VirtualTime Grace::KillTimeOf(const Process& process) const {
-  return AtMostNever(run_.grace_began, GraceOf(process));
+  const auto later = kill_times_.find(process.pid);
+  return later == kill_times_.end() ? AtMostNever(run_.grace_began, GraceOf(process))
+                                    : later->second;
 }
 
-void Grace::KillOverdue() {
-  if (run_.table.living() == 0 || IsOver()) return;
+// Where the kernel has one of its threads, what is left of its grace in real time.
+VirtualDuration Grace::LeftInRealTime(const Process& process) const {
+  const auto& tasks = process.robot->tasks;
+  const bool has_kernel = std::any_of(tasks.begin(), tasks.end(), [&process](const Task* task) {
+    return task->process == &process && task->state == TaskState::kUnseen;
+  });
+  const VirtualDuration passed = VirtualNs((RunClock::Now() - began_).ns());
+  return has_kernel ? std::max(VirtualDuration(), GraceOf(process) - passed) : VirtualDuration();
+}
+
+bool Grace::KillOverdue() {
+  if (run_.table.living() == 0 || IsOver()) return false;
   run_.latest = run_.end;
+  bool awaits = false;
   for (Process& process : run_.table.processes()) {
     if (process.dead || process.killed || KillTimeOf(process) > run_.end) continue;
+    if (const VirtualDuration left = LeftInRealTime(process); left > VirtualDuration()) {
+      kill_times_[process.pid] = AtMostNever(run_.end, left);
+      awaits = true;
+      continue;
+    }
     WarnOfKill(process, "its stop_grace");
     process.killed = true;
     kill(process.pid, SIGKILL);
   }
   signalled_({run_.end});
+  return awaits;
 }
 
 // If there was no time for their graces: all that is left is killed.

@@ -6,7 +6,7 @@
 //   Begin()                    all get their signals
 //   while GoOnToNextKill()     the end of the loop is now then
 //     the loop, until that end, or IsOver()
-//     KillOverdue()
+//     KillOverdue()            of whom the kernel has in its hands, that is waited for
 //   WarnOfThoseLeft()
 //
 // For the coordinator's thread only. Times are virtual nanoseconds where not said otherwise; in
@@ -15,6 +15,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -41,7 +42,9 @@ class Grace {
   // Sets the run's end to when the next client is to be killed. False if there is none: all have
   // ended, or have been killed, or the grace is over.
   bool GoOnToNextKill();
-  void KillOverdue();
+  // One that the kernel has in its hands gets its grace in real time, too, as virtual time goes on
+  // without it: true if such a one is waited for.
+  bool KillOverdue();
   void WarnOfThoseLeft();
 
   // No real time is left; or the user insists.
@@ -49,6 +52,7 @@ class Grace {
   bool IsOver() const { return ran_out_ || run_.stop.insists(); }
 
  private:
+  VirtualDuration LeftInRealTime(const Process& process) const;
   void LimitRealTime();
   int StopSignalOf(const Process& process) const;
   VirtualTime KillTimeOf(const Process& process) const;
@@ -59,6 +63,8 @@ class Grace {
   const UnknownChildren& unknown_children_;
   std::function<void(Moment)> signalled_;
   UniqueFd timer_;  // of real time
+  HostTime began_;
+  std::map<pid_t, VirtualTime> kill_times_;  // of processes that got more than their grace
   bool ran_out_ = false;
 };
 

@@ -76,6 +76,43 @@ spinners_are_killed() {
 }
 beside spinners_are_killed
 
+# Whom the kernel has in its hands, here for a lock that somebody outside holds, gets the grace in real time, too: by virtual
+# time, which goes on with the other thread, it would be over in a moment.
+cat >"$out/held.py" <<'PY'
+import fcntl, signal, sys, threading, time
+lock = open(sys.argv[1])
+def end(number, frame):
+    print("asks", flush=True)
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    print("has it", flush=True)
+    sys.exit()
+def tick():
+    while True: time.sleep(0.01)
+signal.signal(signal.SIGTERM, end)
+threading.Thread(target=tick, daemon=True).start()
+tick()
+PY
+cat >"$out/held.yaml" <<YAML
+duration: 2s
+robots: {r: {clients: {held: {command: [python3, held.py, "$out/lock"], stop_grace: 30s}}}}
+YAML
+the_held_are_awaited() {
+  local run
+  exec {lock}>"$out/lock"
+  flock "$lock"
+  timeout 200 "$tcsim" run "$out/held.yaml" --out "$out/held" >"$out/held.said" 2>&1 {lock}>&- &
+  run=$!
+  for _ in $(seq 2000); do
+    grep -qs asks "$out/held/r-held.out.log" && break
+    sleep 0.05
+  done
+  sleep 1
+  exec {lock}>&-
+  wait "$run" || fail "$(cat "$out/held.said")"
+  grep -q 'has it' "$out/held/r-held.out.log" || fail "was not waited for: $(cat "$out/held.said")"
+}
+beside the_held_are_awaited
+
 said_by() { cat "$out/run/$1.out.log"; }
 check() {
   local accounting=$1 status=0
