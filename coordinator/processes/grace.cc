@@ -44,12 +44,25 @@ void Grace::Begin() {
     if (process.dead) continue;
     kill(process.pid, StopSignalOf(process));
     if (ThreadState(process.pid) == 'T') kill(process.pid, SIGCONT);
+    GrantDebtOf(process);
   }
   for (const auto& [pid, child] : unknown_children_.living()) {
     const Process* parent = run_.table.LivingProcess(child.parent);
     kill(pid, parent == nullptr ? SIGTERM : StopSignalOf(*parent));
   }
   signalled_({.at = run_.grace_began, .from_outside = true});
+}
+
+// What a thread has computed out of its turn passes without it first, and would be most of its
+// grace: where a tracer or a busy host held the coordinator up, say.
+void Grace::GrantDebtOf(const Process& process) {
+  VirtualDuration debt;
+  for (const Task* task : process.robot->tasks) {
+    if (task->process == &process) debt = std::max(debt, task->debt);
+  }
+  const VirtualDuration grace = GraceOf(process);
+  if (debt <= VirtualDuration() || grace == VirtualDuration()) return;
+  kill_times_[process.pid] = AtMostNever(run_.grace_began, grace + debt);
 }
 
 bool Grace::GoOnToNextKill() {

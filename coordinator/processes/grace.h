@@ -52,6 +52,7 @@ class Grace {
   bool IsOver() const { return ran_out_ || run_.stop.insists(); }
 
  private:
+  void GrantDebtOf(const Process& process);
   VirtualDuration LeftInRealTime(const Process& process) const;
   void LimitRealTime();
   int StopSignalOf(const Process& process) const;
