@@ -68,18 +68,32 @@ UniqueFd StateMemoryOf(pid_t pid) {
   return memory && HasBegun(memory) ? std::move(memory) : UniqueFd();
 }
 
-bool IsSameMemory(const UniqueFd& one, const UniqueFd& other) {
-  struct stat first, second;
-  return fstat(one.get(), &first) == 0 && fstat(other.get(), &second) == 0 &&
-         first.st_dev == second.st_dev && first.st_ino == second.st_ino;
-}
-
 std::optional<uid_t> UserOf(pid_t pid) {
   std::ifstream status(ProcOf(pid) + "/status");
   for (std::string line; std::getline(status, line);) {
     if (line.rfind("Uid:", 0) == 0) return static_cast<uid_t>(std::atol(line.c_str() + 4));
   }
   return std::nullopt;
+}
+
+// As the process knows itself, in a container of its own.
+std::optional<pid_t> OwnNumberOf(pid_t pid) {
+  std::ifstream status(ProcOf(pid) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.rfind("NSpid:", 0) == 0) {
+      return static_cast<pid_t>(std::atol(line.c_str() + line.find_last_of("\t ") + 1));
+    }
+  }
+  return std::nullopt;
+}
+
+// Others have the memory, too: the block detector, and whoever asks just now.
+bool IsCoordinatorOf(pid_t pid, const UniqueFd& memory) {
+  pid_t coordinator = 0;
+  static_assert(sizeof StatePage::coordinator_pid == sizeof coordinator);
+  return pread(memory.get(), &coordinator, sizeof coordinator,
+               static_cast<off_t>(offsetof(StatePage, coordinator_pid))) == sizeof coordinator &&
+         OwnNumberOf(pid) == coordinator;
 }
 
 std::string NameOfUser(uid_t uid) {
@@ -189,15 +203,7 @@ std::vector<FoundRun> FindRuns() {
   std::vector<FoundRun> runs;
   for (const pid_t pid : AllProcesses()) {
     UniqueFd memory = StateMemoryOf(pid);
-    if (!memory) continue;
-    // The block detector has what the coordinator has, whose child it is.
-    const auto known = std::find_if(runs.begin(), runs.end(), [&memory](const FoundRun& run) {
-      return IsSameMemory(run.memory, memory);
-    });
-    if (known != runs.end()) {
-      if (DescendsFrom(known->coordinator, pid)) known->coordinator = pid;
-      continue;
-    }
+    if (!memory || !IsCoordinatorOf(pid, memory)) continue;
     char folder[StatePage::kMostPath] = {};
     const ssize_t size = pread(memory.get(), folder, sizeof folder - 1,
                                static_cast<off_t>(offsetof(StatePage, folder)));

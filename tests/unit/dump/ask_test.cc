@@ -177,5 +177,24 @@ TEST(ChooseRun, GoesByFolderAndByProcess) {
   EXPECT_EQ(chosen("999999999"), "there is no process 999999999");
 }
 
+// Whoever asks has the run's memory, too, and comes before it where its number is lower.
+TEST(FindRuns, NeverTakesWhoeverAsksForACoordinator) {
+  const Coordinator coordinator(Greet, "/usr");
+  const FoundRun asked = coordinator.Run();
+  const pid_t parent = getpid();
+  const pid_t asker = fork();
+  if (asker == 0) {
+    bool finds = false, takes_asker = false;
+    for (const FoundRun& run : FindRuns()) {
+      finds |= run.coordinator == coordinator.pid();
+      takes_asker |= run.coordinator == parent || run.coordinator == getpid();
+    }
+    _exit(finds && !takes_asker ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(asker, &status, 0), asker);
+  EXPECT_EQ(status, 0);
+}
+
 }  // namespace
 }  // namespace tcs
