@@ -15,7 +15,6 @@
 
 #include "coordinator/calls/dds_records.h"
 #include "coordinator/calls/priority_inheritance.h"
-#include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
@@ -23,6 +22,7 @@
 #include "coordinator/tasks/moment.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
+#include "coordinator/world/world.h"
 #include "shm/layout.h"
 
 namespace tcs {

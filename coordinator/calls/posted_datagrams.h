@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "coordinator/core/world.h"
 #include "coordinator/tasks/run_state.h"
+#include "coordinator/world/world.h"
 
 namespace tcs {
 

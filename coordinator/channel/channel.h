@@ -1,5 +1,5 @@
 // How programs meet their robot: what sensors read goes out at an Outlet, commands come in at an
-// Inlet. What carries both is a transport: a folder here, and a few lines in channels.cc.
+// Inlet. What carries both is a transport: a folder here, and a few lines in open/channels.cc.
 //
 // Outlets and inlets carry, no more. When a sensor is sampled, what it reads, and when a command
 // acts is none of their business but world/'s.

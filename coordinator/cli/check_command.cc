@@ -5,13 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <variant>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/expected.h"
 #include "coordinator/cli/print.h"
-#include "coordinator/core/world.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/visible.h"
 #include "coordinator/scenario/load.h"
+#include "coordinator/world/world.h"
 
 namespace tcs {
 

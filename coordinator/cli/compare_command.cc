@@ -5,13 +5,13 @@
 #include <optional>
 #include <variant>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/compare/judge.h"
 #include "coordinator/compare/read_side.h"
 #include "coordinator/compare/words.h"
 #include "coordinator/os/visible.h"
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs {
 
@@ -22,7 +22,7 @@ std::optional<double> ShareOf(std::string text) {
   const bool is_percent = !text.empty() && text.back() == '%';
   if (is_percent) text.pop_back();
   while (!text.empty() && text.back() == ' ') text.pop_back();
-  const auto number = report::ToReal(text);
+  const auto number = ToReal(text);
   if (!number || *number < 0 || (!is_percent && *number >= 1)) return {};
   return is_percent ? *number / 100 : *number;
 }

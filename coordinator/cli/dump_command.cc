@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/dump/ask.h"
 #include "coordinator/dump/find_run.h"

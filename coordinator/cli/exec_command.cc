@@ -9,8 +9,8 @@
 #include <system_error>
 #include <vector>
 
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/duration_option.h"
-#include "coordinator/cli/exit_status.h"
 #include "coordinator/os/say.h"
 #include "coordinator/scenario/executable.h"
 #include "coordinator/scenario/load_outside.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/core/failures.h"
 

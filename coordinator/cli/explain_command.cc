@@ -10,12 +10,12 @@
 #include <variant>
 #include <vector>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
+#include "coordinator/errors/nearest.h"
 #include "coordinator/explain/explanation.h"
 #include "coordinator/explain/told.h"
 #include "coordinator/scenario/duration.h"
-#include "coordinator/scenario/nearest.h"
 #include "coordinator/text/spoken.h"
 
 namespace tcs {

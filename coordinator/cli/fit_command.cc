@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/fit/fit_table.h"
 #include "coordinator/fit/fragment.h"

@@ -14,7 +14,7 @@
 #include <new>
 #include <string>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/os/unique_fd.h"
 
 namespace tcs {

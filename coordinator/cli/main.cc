@@ -11,10 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/cli/basics/exit_status.h"
+#include "coordinator/cli/basics/version.h"
 #include "coordinator/cli/check_command.h"
 #include "coordinator/cli/examples_text.h"
 #include "coordinator/cli/exec_command.h"
-#include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/manual/help_text.h"
 #include "coordinator/cli/new_command.h"
 #include "coordinator/cli/preload_library.h"
@@ -24,11 +25,10 @@
 #include "coordinator/cli/tools.h"
 #include "coordinator/cli/trials_options.h"
 #include "coordinator/cli/user_preload.h"
-#include "coordinator/cli/version.h"
 #include "coordinator/cli/view_command.h"
+#include "coordinator/errors/nearest.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
-#include "coordinator/scenario/nearest.h"
 #include "coordinator/view/launch.h"
 #include "simbody_bridge/library/physics_library.h"
 

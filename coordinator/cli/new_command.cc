@@ -7,7 +7,7 @@
 #include <system_error>
 #include <variant>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/os/files.h"

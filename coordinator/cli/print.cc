@@ -3,7 +3,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 
 namespace tcs {
 

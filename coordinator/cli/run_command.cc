@@ -10,22 +10,22 @@
 #include <optional>
 #include <system_error>
 
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/check_command.h"
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/earlier_run.h"
-#include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/expected.h"
 #include "coordinator/cli/live_line.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/stop_at.h"
 #include "coordinator/cli/summary.h"
 #include "coordinator/cli/tools.h"
+#include "coordinator/errors/nearest.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/visible.h"
 #include "coordinator/scenario/leave_out_later.h"
 #include "coordinator/scenario/load.h"
-#include "coordinator/scenario/nearest.h"
 #include "coordinator/view/view_link.h"
 
 namespace tcs {

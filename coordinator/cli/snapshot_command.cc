@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/stop_at.h"
 #include "coordinator/os/files.h"

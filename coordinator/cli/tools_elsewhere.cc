@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/tools.h"
 

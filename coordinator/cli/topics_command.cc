@@ -4,7 +4,7 @@
 
 #include <variant>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/dds/topics_file.h"
 #include "coordinator/dds/topics_table.h"

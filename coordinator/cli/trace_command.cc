@@ -1,6 +1,6 @@
 #include "coordinator/cli/trace_command.h"
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/os/visible.h"
 #include "coordinator/perfetto/perfetto_trace.h"

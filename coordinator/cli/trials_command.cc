@@ -12,14 +12,14 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/cli/basics/exit_status.h"
+#include "coordinator/cli/basics/version.h"
 #include "coordinator/cli/duration_option.h"
-#include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/expected.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/terminal_line.h"
 #include "coordinator/cli/trials_expected.h"
-#include "coordinator/cli/version.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/cpu_places.h"
 #include "coordinator/os/files.h"

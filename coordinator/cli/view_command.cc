@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/os/files.h"
 #include "coordinator/view/launch.h"

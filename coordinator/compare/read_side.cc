@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/report/read_run.h"
 #include "coordinator/report/statistics.h"
 #include "coordinator/report/text.h"
+#include "coordinator/text/csv.h"
 #include "coordinator/trials/outcome.h"
 #include "coordinator/trials/record.h"
 
@@ -77,7 +77,7 @@ Ending TakeSummary(const std::string& text, Side* side, Cell* cell) {
 
 // How the run varied in itself.
 void TakeParts(const std::string& folder, Cell* cell) {
-  if (!report::IsFile(folder + "/activations.csv")) return;
+  if (!IsFile(folder + "/activations.csv")) return;
   std::vector<std::string> ignored;
   const auto read = report::ReadRunTimes(folder, &ignored);
   const auto* run = std::get_if<report::Run>(&read);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "coordinator/compare/side.h"
-#include "coordinator/scenario/load_error.h"
+#include "coordinator/errors/load_error.h"
 
 namespace tcs::compare {
 

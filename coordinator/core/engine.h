@@ -55,7 +55,6 @@
 #include "coordinator/core/standstill_watch.h"
 #include "coordinator/core/state_dump.h"
 #include "coordinator/core/turns_beside.h"
-#include "coordinator/core/world.h"
 #include "coordinator/dump/state_link.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/host/host_cpu.h"
@@ -90,6 +89,7 @@
 #include "coordinator/tasks/run_clock.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
+#include "coordinator/world/world.h"
 #include "shm/attach_protocol.h"
 #include "shm/clock_page.h"
 
@@ -324,11 +324,12 @@ class Engine {
   SpinWaits spins_{run_};
   DateCalls dates_{run_, waker_};
   Registration registration_{
-      {run_, waker_, reactor_, host_cpu_, sockets_, bare_programs_, births_, deaths_, dds_},
-      [this](Process& process, Moment moment) {
-        TimerCalls::DeletePosix(process);
-        dds_.Leave(process, moment);
-      }};
+      {run_, waker_, reactor_, host_cpu_, sockets_, bare_programs_, births_, deaths_},
+      {[this](Process& process, Moment moment) {
+         TimerCalls::DeletePosix(process);
+         dds_.Leave(process, moment);
+       },
+       [this](const Process& process) { return dds_.AreaOf(process); }}};
   Launches launches_{run_, waker_, births_, sockets_, traps_, world_, network_, guard_.guarded()};
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{run_.table, reactor_, unmanaged_};

@@ -8,7 +8,6 @@
 #include "coordinator/calls/datagram_queues.h"
 #include "coordinator/calls/dds_records.h"
 #include "coordinator/core/pacing.h"
-#include "coordinator/core/world.h"
 #include "coordinator/processes/launches.h"
 #include "coordinator/processes/usage_book.h"
 #include "coordinator/queues/futex_table.h"
@@ -17,6 +16,7 @@
 #include "coordinator/tasks/coordinator.h"
 #include "coordinator/tasks/run_clock.h"
 #include "coordinator/tasks/run_state.h"
+#include "coordinator/world/world.h"
 
 namespace tcs {
 

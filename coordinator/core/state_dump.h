@@ -10,7 +10,6 @@
 
 #include "coordinator/core/computing_ahead.h"
 #include "coordinator/core/pacing.h"
-#include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
 #include "coordinator/dump/state_link.h"
 #include "coordinator/host/host_cpu.h"
@@ -21,6 +20,7 @@
 #include "coordinator/queues/wait_queues.h"
 #include "coordinator/tasks/run_clock.h"
 #include "coordinator/tasks/run_state.h"
+#include "coordinator/world/world.h"
 
 namespace tcs {
 

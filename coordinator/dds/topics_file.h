@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "coordinator/dds/qos.h"
-#include "coordinator/scenario/load_error.h"
+#include "coordinator/errors/load_error.h"
 
 namespace tcs::dds {
 

@@ -30,7 +30,7 @@ namespace tcs {
 
 namespace {
 
-std::string ReadFile(const char* path) {
+std::string TextOf(const char* path) {
   std::ifstream file(path);
   std::stringstream text;
   text << file.rdbuf();
@@ -83,7 +83,7 @@ Finding LookAtCpu() {
   cpu_set_t allowed;
   sched_getaffinity(0, sizeof allowed, &allowed);
   return JudgeCpu(LastAllowedCpu(), CPU_COUNT(&allowed),
-                  ReadFile("/sys/devices/system/cpu/isolated"));
+                  TextOf("/sys/devices/system/cpu/isolated"));
 }
 
 const char* Word(Verdict verdict) {
@@ -115,19 +115,19 @@ const char* Colour(Verdict verdict) {
 std::vector<Finding> Examine(const std::string& preload_library) {
   return {
       JudgeRealTime(AskForRealTime()),
-      JudgeThrottling(ReadFile("/proc/sys/kernel/sched_rt_runtime_us"),
-                      ReadFile("/proc/sys/kernel/sched_rt_period_us"),
-                      ReadFile("/proc/sys/kernel/osrelease")),
+      JudgeThrottling(TextOf("/proc/sys/kernel/sched_rt_runtime_us"),
+                      TextOf("/proc/sys/kernel/sched_rt_period_us"),
+                      TextOf("/proc/sys/kernel/osrelease")),
       JudgeTrap(WhyNoTrap()),
-      JudgeTsc(ReadFile("/proc/cpuinfo"),
-               ReadFile("/sys/devices/system/clocksource/clocksource0/current_clocksource")),
+      JudgeTsc(TextOf("/proc/cpuinfo"),
+               TextOf("/sys/devices/system/clocksource/clocksource0/current_clocksource")),
       LookAtCpu(),
       TryDescriptors(),
       JudgeLayout(WhyNoFixedLayout()),
       JudgeNetworks(WhyNoComputer(), !MayMakeNamespaces()),
       JudgeLibc(gnu_get_libc_version(), TellsEndWords()),
       TryShim(preload_library),
-      JudgeSteal(ReadFile("/proc/stat")),
+      JudgeSteal(TextOf("/proc/stat")),
   };
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::explain {
 
@@ -24,7 +24,7 @@ bool TakeShares(std::string_view whose, Activation* activation) {
     const std::size_t colon = share.find(':'), equals = share.rfind('=');
     if (colon == std::string_view::npos || equals == std::string_view::npos || equals < colon)
       return false;
-    const std::optional<std::int64_t> ns = report::ToInteger(share.substr(equals + 1));
+    const std::optional<std::int64_t> ns = ToInteger(share.substr(equals + 1));
     if (!ns.has_value()) return false;
     auto& of = share.substr(0, colon) == "lock" ? activation->locks : activation->cores;
     of.push_back({std::string(share.substr(colon + 1, equals - colon - 1)), *ns});
@@ -32,7 +32,7 @@ bool TakeShares(std::string_view whose, Activation* activation) {
   return true;
 }
 
-std::optional<Activation> ActivationOf(const report::CsvFields& fields) {
+std::optional<Activation> ActivationOf(const CsvFields& fields) {
   Activation activation{.client = std::string(fields[0])};
   const std::array<std::int64_t*, 10> numbers = {&activation.thread,      &activation.release_ns,
                                                  &activation.start_ns,    &activation.end_ns,
@@ -40,7 +40,7 @@ std::optional<Activation> ActivationOf(const report::CsvFields& fields) {
                                                  &activation.away_ns,     &activation.executed_ns,
                                                  &activation.room_ns,     &activation.rest_ns};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const std::optional<std::int64_t> number = report::ToInteger(fields[i + 1]);
+    const std::optional<std::int64_t> number = ToInteger(fields[i + 1]);
     if (!number.has_value()) return std::nullopt;
     *numbers[i] = *number;
   }
@@ -118,25 +118,24 @@ std::map<std::string, Client> ReadClients(const json& summary) {
 
 LoadResult<Told> ReadTold(const std::string& folder) {
   // Of a run that was cut off there is no summary; then nothing is known of priorities.
-  const json summary =
-      json::parse(report::ReadFile(folder + "/summary.json").value_or(""), nullptr, false);
+  const json summary = json::parse(ReadFile(folder + "/summary.json").value_or(""), nullptr, false);
   Told told{.chains = ReadChains(summary), .clients = ReadClients(summary)};
   const bool is_whole = !told.clients.empty();
-  const auto read =
-      report::ReadCsv(folder + "/responses.csv",
-                      {"client", "thread", "release_ns", "start_ns", "end_ns", "deadline_ns",
-                       "queued_ns", "away_ns", "executed_ns", "room_ns", "rest_ns", "whose"},
-                      [&](const report::CsvFields& fields) {
-                        std::optional<Activation> activation = ActivationOf(fields);
-                        if (!activation.has_value()) return false;
-                        Client& client = told.clients[activation->client];
-                        if (!is_whole && activation->deadline_ns > 0) client.has_deadline = true;
-                        if (activation->end_ns <= client.counted_after_ns) return true;
-                        // A client of which nobody expects that it keeps a period.
-                        if (!client.has_deadline) activation->deadline_ns = 0;
-                        told.activations.push_back(std::move(*activation));
-                        return true;
-                      });
+  const auto read = ReadCsv(folder + "/responses.csv",
+                            {"client", "thread", "release_ns", "start_ns", "end_ns", "deadline_ns",
+                             "queued_ns", "away_ns", "executed_ns", "room_ns", "rest_ns", "whose"},
+                            [&](const CsvFields& fields) {
+                              std::optional<Activation> activation = ActivationOf(fields);
+                              if (!activation.has_value()) return false;
+                              Client& client = told.clients[activation->client];
+                              if (!is_whole && activation->deadline_ns > 0)
+                                client.has_deadline = true;
+                              if (activation->end_ns <= client.counted_after_ns) return true;
+                              // A client of which nobody expects that it keeps a period.
+                              if (!client.has_deadline) activation->deadline_ns = 0;
+                              told.activations.push_back(std::move(*activation));
+                              return true;
+                            });
   if (const auto* error = std::get_if<LoadError>(&read)) {
     return LoadError{error->message +
                      "; it is in the folder of a run by `tcsim run` of this version of tcs"};

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/scenario/load_error.h"
+#include "coordinator/errors/load_error.h"
 
 namespace tcs::explain {
 

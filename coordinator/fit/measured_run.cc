@@ -7,21 +7,20 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/report/text.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::fit {
 
 namespace {
 
 using Json = nlohmann::json;
-using report::CsvFields;
 
 // Far more than any run has, and so little that sums of it are numbers yet.
 constexpr double kMost = 1e18;
 
 std::optional<double> ToCount(std::string_view text) {
-  const std::optional<std::int64_t> value = report::ToInteger(text);
+  const std::optional<std::int64_t> value = ToInteger(text);
   if (!value || *value < 0 || static_cast<double>(*value) > kMost) return {};
   return static_cast<double>(*value);
 }
@@ -47,7 +46,7 @@ LoadError NotCounted(const std::string& folder) {
 
 LoadResult<MeasuredRun> FromSummary(const std::string& folder) {
   const std::string path = folder + "/summary.json";
-  const std::optional<std::string> text = report::ReadFile(path);
+  const std::optional<std::string> text = ReadFile(path);
   if (!text) {
     return LoadError{fmt::format(
         "{} has no summary.json: give the folder of a run that has ended, one made by `tcsim run "
@@ -94,7 +93,7 @@ LoadResult<MeasuredRun> ReadMeasuredRun(const std::string& folder) {
     client->second.activations.push_back({*charged, *calls, *allocations});
     return true;
   };
-  const auto read = report::ReadCsv(path, {"client", "charged_ns", "calls", "allocations"}, take);
+  const auto read = ReadCsv(path, {"client", "charged_ns", "calls", "allocations"}, take);
   if (const auto* error = std::get_if<LoadError>(&read)) return *error;
   if (const auto unusable = std::get<std::int64_t>(read); unusable > 0) {
     run->warnings.push_back(fmt::format("{} has {} that cannot be used; left out", path,

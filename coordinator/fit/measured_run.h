@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/errors/load_error.h"
 #include "coordinator/fit/costs.h"
-#include "coordinator/scenario/load_error.h"
 
 namespace tcs::fit {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "coordinator/scenario/nearest.h"
+#include "coordinator/errors/nearest.h"
 
 namespace tcs {
 

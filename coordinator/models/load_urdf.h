@@ -7,10 +7,10 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/errors/load_error.h"
 #include "coordinator/models/mesh_library.h"
 #include "coordinator/models/package_path.h"
 #include "coordinator/models/urdf_notes.h"
-#include "coordinator/scenario/load_error.h"
 #include "simbody_bridge/model/robot_model.h"
 
 namespace tcs {

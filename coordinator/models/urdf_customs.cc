@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/models/urdf_grammar.h"
 #include "coordinator/models/urdf_xml.h"
-#include "coordinator/scenario/nearest.h"
 
 namespace tcs {
 namespace {

@@ -10,11 +10,11 @@
 #include <optional>
 #include <string_view>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/models/urdf_friction.h"
 #include "coordinator/models/urdf_rules.h"
 #include "coordinator/models/urdf_xml.h"
 #include "coordinator/os/visible.h"
-#include "coordinator/scenario/nearest.h"
 
 namespace tcs {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <string_view>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/models/urdf_customs.h"
 #include "coordinator/models/urdf_grammar.h"
 #include "coordinator/models/urdf_xml.h"
-#include "coordinator/scenario/nearest.h"
 #include "simbody_bridge/model/joint_kinds.h"
 #include "simbody_bridge/model/model_check.h"
 

@@ -9,15 +9,10 @@
 #include <variant>
 #include <vector>
 
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::perfetto {
 namespace {
-
-using report::CsvFields;
-using report::ReadCsv;
-using report::ToInteger;
-using report::ToReal;
 
 // Of one quantity of a sensor: some megabytes of them are slow to look at, and show nothing more.
 constexpr std::int64_t kMostValues = 20'000;
@@ -38,7 +33,7 @@ std::optional<std::int64_t> ToNs(std::string_view seconds) {
 
 std::string Read(const std::string& path, const std::vector<std::string_view>& columns,
                  const std::function<bool(const CsvFields&)>& take) {
-  if (!report::IsFile(path)) return {};
+  if (!IsFile(path)) return {};
   const auto read = ReadCsv(path, columns, take);
   const auto* error = std::get_if<LoadError>(&read);
   return error == nullptr ? "" : error->message;
@@ -48,7 +43,7 @@ std::string Read(const std::string& path, const std::vector<std::string_view>& c
 
 std::string AddBodies(const std::string& folder, EventWriter* events) {
   const std::string path = folder + "/bodies.csv";
-  if (!report::IsFile(path)) return {};
+  if (!IsFile(path)) return {};
   const int group = events->AddGroup("bodies");
   return Read(
       path,
@@ -71,7 +66,7 @@ std::string AddBodies(const std::string& folder, EventWriter* events) {
 
 std::string AddJoints(const std::string& folder, EventWriter* events) {
   const std::string path = folder + "/joints.csv";
-  if (!report::IsFile(path)) return {};
+  if (!IsFile(path)) return {};
   const int group = events->AddGroup("joints");
   return Read(path, {"time_s", "joint", "position", "velocity", "effort"},
               [&](const CsvFields& fields) {
@@ -88,7 +83,7 @@ std::string AddJoints(const std::string& folder, EventWriter* events) {
 
 std::string AddMeasurements(const std::string& folder, EventWriter* events) {
   const std::string path = folder + "/sensors.csv";
-  if (!report::IsFile(path)) return {};
+  if (!IsFile(path)) return {};
   const auto name_of = [](std::string_view channel, std::string_view of, std::string_view what) {
     std::string name(channel);
     if (!of.empty() && of != channel) name += " " + std::string(of);
@@ -125,7 +120,7 @@ std::string AddMeasurements(const std::string& folder, EventWriter* events) {
 // A line holds one quantity of a command.
 std::string AddCommands(const std::string& folder, EventWriter* events) {
   const std::string path = folder + "/commands.csv";
-  if (!report::IsFile(path)) return {};
+  if (!IsFile(path)) return {};
   const int group = events->AddGroup("commands");
   return Read(path, {"acts_ns", "channel", "target", "quantity", "value"},
               [&](const CsvFields& fields) {

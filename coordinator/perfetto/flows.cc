@@ -7,13 +7,10 @@
 #include <utility>
 #include <variant>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/report/read_said.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::perfetto {
-
-using report::CsvFields;
-using report::ToInteger;
 
 namespace {
 
@@ -22,7 +19,7 @@ constexpr std::int64_t kMostDatagrams = 200'000;
 
 std::string AddFile(const std::string& path, std::string_view topic_column, std::int64_t most,
                     const Schedule& schedule, int group, EventWriter* events) {
-  const auto read = report::ReadCsv(
+  const auto read = ReadCsv(
       path, {"sent_ns", "sender", "received_ns", "receiver", topic_column},
       [&](const CsvFields& fields) {
         if (most-- <= 0) return true;
@@ -48,7 +45,7 @@ std::string AddFile(const std::string& path, std::string_view topic_column, std:
 
 std::string AddMessages(const std::string& folder, const Schedule& schedule, EventWriter* events) {
   const std::string messages = folder + "/messages.csv", datagrams = folder + "/datagrams.csv";
-  const bool has_messages = report::IsFile(messages), has_datagrams = report::IsFile(datagrams);
+  const bool has_messages = IsFile(messages), has_datagrams = IsFile(datagrams);
   if (!has_messages && !has_datagrams) return {};
   const int group = events->AddGroup("age of messages when they are received");
   std::string error;

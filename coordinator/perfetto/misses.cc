@@ -6,13 +6,12 @@
 
 #include "coordinator/explain/explanation.h"
 #include "coordinator/explain/told.h"
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::perfetto {
 
 void AddMisses(const std::string& folder, const Schedule& schedule, EventWriter* events) {
-  if (!report::IsFile(folder + "/responses.csv") || !report::IsFile(folder + "/summary.json"))
-    return;
+  if (!IsFile(folder + "/responses.csv") || !IsFile(folder + "/summary.json")) return;
   const auto read = explain::ReadTold(folder);
   const auto* told = std::get_if<explain::Told>(&read);
   if (told == nullptr) return;

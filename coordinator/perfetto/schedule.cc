@@ -6,12 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::perfetto {
 namespace {
-
-using report::ReadFile;
 
 // The text after `key`, which a line of the trace has once.
 std::optional<std::string_view> After(std::string_view line, std::string_view key) {

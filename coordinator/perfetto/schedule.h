@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/scenario/load_error.h"
+#include "coordinator/errors/load_error.h"
 
 namespace tcs::perfetto {
 

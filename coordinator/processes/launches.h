@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/core/world.h"
 #include "coordinator/network/robot_network.h"
 #include "coordinator/processes/births.h"
 #include "coordinator/processes/registration_sockets.h"
@@ -19,6 +18,7 @@
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
+#include "coordinator/world/world.h"
 
 namespace tcs {
 

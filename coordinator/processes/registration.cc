@@ -130,7 +130,7 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   if (!run_.turn.IsOf(task)) parts_.cpu.active().HoldUnknown(task);
   if (hello.tid == hello.pid) {
     process.is_bare = false;
-    starts_anew_(process, moment);
+    callbacks_.starts_anew(process, moment);
   }
   PlaceAtGate(task, moment.at, !std::exchange(task.is_adopted, false));
   task.can_be_stopped = true;
@@ -208,7 +208,7 @@ void Registration::TakeEndWord(Task& task, std::uint64_t address) {
 
 void Registration::GiveDdsArea(int connection, pid_t pid) {
   const Process* process = run_.table.LivingProcess(pid);
-  const int fd = process == nullptr ? -1 : parts_.dds.AreaOf(*process);
+  const int fd = process == nullptr ? -1 : callbacks_.dds_area_of(*process);
   if (fd < 0) return Refuse(connection, "it has not joined");
   Accept(connection, 0, std::span(&fd, 1));
 }

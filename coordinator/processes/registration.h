@@ -18,7 +18,6 @@
 #include <map>
 #include <utility>
 
-#include "coordinator/calls/dds_gateway.h"
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/processes/bare_programs.h"
 #include "coordinator/processes/births.h"
@@ -44,13 +43,17 @@ class Registration {
     BarePrograms& bare_programs;
     Births& births;
     Deaths& deaths;
-    DdsGateway& dds;
   };
 
-  // `starts_anew` is told of a process that is new, or executes another program: what it had before
-  // is gone.
-  Registration(const Parts& parts, std::function<void(Process&, Moment)> starts_anew)
-      : parts_(parts), run_(parts.run), starts_anew_(std::move(starts_anew)) {}
+  struct Callbacks {
+    // Of a process that is new, or executes another program: what it had before is gone.
+    std::function<void(Process&, Moment)> starts_anew;
+    // The memory through which the process exchanges DDS messages; -1 if it has not joined.
+    std::function<int(const Process&)> dds_area_of;
+  };
+
+  Registration(const Parts& parts, Callbacks callbacks)
+      : parts_(parts), run_(parts.run), callbacks_(std::move(callbacks)) {}
 
   // The run's memory, which all that register get to see.
   void ShareMemory(int fd) { memory_fd_ = fd; }
@@ -90,7 +93,7 @@ class Registration {
 
   const Parts parts_;
   RunState& run_;
-  std::function<void(Process&, Moment)> starts_anew_;
+  const Callbacks callbacks_;
   int memory_fd_ = -1;
   std::map<pid_t, Connection> early_;  // of threads that register later, by their numbers
 };

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "coordinator/answers/response_log.h"
-#include "coordinator/core/world.h"
 #include "coordinator/metrics/client_metrics.h"
 #include "coordinator/metrics/metric_book.h"
 #include "coordinator/tasks/activations.h"
@@ -17,6 +16,7 @@
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/trace/output_log.h"
 #include "coordinator/trace/schedule_records.h"
+#include "coordinator/world/world.h"
 
 namespace tcs {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "coordinator/os/unique_fd.h"
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 

@@ -6,7 +6,6 @@
 
 #include "coordinator/explain/told.h"
 #include "coordinator/report/answer_sections.h"
-#include "coordinator/report/csv.h"
 #include "coordinator/report/expected_words.h"
 #include "coordinator/report/measure_sections.h"
 #include "coordinator/report/metric_sections.h"
@@ -17,6 +16,7 @@
 #include "coordinator/report/sections.h"
 #include "coordinator/report/style.h"
 #include "coordinator/report/text.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/errors/load_error.h"
 #include "coordinator/report/measure_data.h"
 #include "coordinator/report/results.h"
-#include "coordinator/scenario/load_error.h"
 
 namespace tcs::report {
 

@@ -4,12 +4,12 @@
 #include <string_view>
 #include <utility>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/report/read_said.h"
 #include "coordinator/report/replay.h"
 #include "coordinator/report/replay_reader.h"
 #include "coordinator/report/replay_scene.h"
 #include "coordinator/report/text.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/report/read_run.h"
 #include "coordinator/report/text.h"
 #include "coordinator/scenario/duration.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "coordinator/explain/told.h"
-#include "coordinator/report/csv.h"
 #include "coordinator/report/read_answers.h"
 #include "coordinator/report/text.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 

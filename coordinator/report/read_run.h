@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/errors/load_error.h"
 #include "coordinator/report/results.h"
-#include "coordinator/scenario/load_error.h"
 
 namespace tcs::report {
 

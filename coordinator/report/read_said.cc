@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 namespace {

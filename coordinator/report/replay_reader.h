@@ -11,9 +11,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/report/replay.h"
 #include "coordinator/report/replay_scene.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 

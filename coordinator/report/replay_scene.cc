@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/report/looks.h"
+#include "coordinator/text/csv.h"
 #include "simbody_bridge/model/pose.h"
 
 namespace tcs::report {

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "coordinator/report/bytes.h"
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 

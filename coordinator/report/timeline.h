@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/report/csv.h"
-#include "coordinator/scenario/load_error.h"
+#include "coordinator/errors/load_error.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 

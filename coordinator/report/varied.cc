@@ -4,8 +4,8 @@
 #include <set>
 #include <utility>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/scenario/duration.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::report {
 

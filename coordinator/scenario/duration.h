@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "coordinator/scenario/load_error.h"
+#include "coordinator/errors/load_error.h"
 #include "shm/virtual_time.h"
 
 namespace tcs {

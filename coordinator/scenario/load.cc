@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestFile = 1 << 20;
 
-std::string ReadFile(const std::string& path, const char* of_what) {
+std::string ReadScenarioFile(const std::string& path, const char* of_what) {
   const auto fail = [&](const std::string& why) {
     throw ScenarioMistake{path + ": " + why + "; give the path of " + of_what};
   };
@@ -38,7 +38,7 @@ std::string ReadFile(const std::string& path, const char* of_what) {
 }
 
 std::vector<Setting> ReadOverlay(const std::string& path) {
-  return SettingsOfOverlay(path, ReadFile(path, "a piece of a scenario"));
+  return SettingsOfOverlay(path, ReadScenarioFile(path, "a piece of a scenario"));
 }
 
 void Append(std::vector<Setting> more, std::vector<Setting>* settings) {
@@ -92,7 +92,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   }
   Append(SettingsOfOptions(overrides.set), &settings);
   const YamlMap top =
-      ParseYaml(path, ReadFile(path, "a scenario file"), settings, mistakes).AsMap();
+      ParseYaml(path, ReadScenarioFile(path, "a scenario file"), settings, mistakes).AsMap();
   top.AllowOnly({"name", "duration", "drift", "patience", "seed", "csv_period", "csv_contacts",
                  "dynamics", "bodies", "models", "robots", "network", "channels", "chains", "clock",
                  "ros", "metrics", "expect"});

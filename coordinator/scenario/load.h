@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "coordinator/scenario/load_error.h"
+#include "coordinator/errors/load_error.h"
 #include "coordinator/scenario/scenario.h"
 #include "shm/virtual_time.h"
 

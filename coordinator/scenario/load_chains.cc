@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "coordinator/scenario/nearest.h"
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/sections.h"
 
 namespace tcs {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/load_dds.h"
 #include "coordinator/scenario/load_instruments.h"
 #include "coordinator/scenario/load_joints.h"
@@ -12,7 +13,6 @@
 #include "coordinator/scenario/load_sensing.h"
 #include "coordinator/scenario/load_serial.h"
 #include "coordinator/scenario/load_sockets.h"
-#include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 
 namespace tcs {

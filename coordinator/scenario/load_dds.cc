@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/load_instruments.h"
-#include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/own_topics.h"
 #include "coordinator/scenario/sections.h"
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/measures/measure.h"
 #include "coordinator/scenario/leave_out_later.h"
 #include "coordinator/scenario/metric_names.h"
-#include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 
 namespace tcs {

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <functional>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/models/file_text.h"
 #include "coordinator/models/model_mistake.h"
 #include "coordinator/scenario/load_joints.h"
 #include "coordinator/scenario/load_rays.h"
 #include "coordinator/scenario/load_sensing.h"
-#include "coordinator/scenario/nearest.h"
 
 namespace tcs {
 namespace {

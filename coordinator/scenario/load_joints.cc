@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/scenario/nearest.h"
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/sections.h"
 
 namespace tcs {

@@ -11,7 +11,7 @@
 #include <system_error>
 #include <vector>
 
-#include "coordinator/scenario/nearest.h"
+#include "coordinator/errors/nearest.h"
 
 namespace tcs {
 namespace {

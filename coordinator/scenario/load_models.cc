@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/models/load_urdf.h"
 #include "coordinator/models/model_mistake.h"
 #include "coordinator/models/srdf.h"
@@ -19,7 +20,6 @@
 #include "coordinator/models/xacro.h"
 #include "coordinator/scenario/load_rotors.h"
 #include "coordinator/scenario/load_values.h"
-#include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 #include "coordinator/scenario/substitute.h"
 #include "simbody_bridge/engines.h"

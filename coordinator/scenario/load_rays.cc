@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/load_instruments.h"
 #include "coordinator/scenario/load_values.h"
-#include "coordinator/scenario/nearest.h"
 
 namespace tcs {
 

@@ -4,10 +4,10 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/executable.h"
 #include "coordinator/scenario/load_lives.h"
 #include "coordinator/scenario/load_outside.h"
-#include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 #include "coordinator/scenario/substitute.h"
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/load_joints.h"
 #include "coordinator/scenario/load_values.h"
-#include "coordinator/scenario/nearest.h"
 #include "simbody_bridge/model/rigid_tree.h"
 
 namespace tcs {

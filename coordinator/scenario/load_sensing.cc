@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "coordinator/scenario/nearest.h"
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/sections.h"
 
 namespace tcs {

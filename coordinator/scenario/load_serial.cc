@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "coordinator/scenario/nearest.h"
+#include "coordinator/errors/nearest.h"
 
 namespace tcs {
 namespace {

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/load_air.h"
 #include "coordinator/scenario/load_joints.h"
 #include "coordinator/scenario/load_values.h"
-#include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 #include "simbody_bridge/engines.h"
 

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "coordinator/scenario/nearest.h"
+#include "coordinator/errors/nearest.h"
 
 namespace tcs {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "coordinator/scenario/nearest.h"
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/yaml_reader.h"
 
 namespace tcs {

@@ -11,8 +11,8 @@
 #include <sstream>
 #include <utility>
 
+#include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/duration.h"
-#include "coordinator/scenario/nearest.h"
 
 namespace tcs {
 namespace {

@@ -8,12 +8,10 @@
 #include <utility>
 #include <variant>
 
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::snapshot {
 namespace {
-
-using report::CsvFields;
 
 using Lines = std::map<std::string, std::vector<std::string>>;
 
@@ -29,8 +27,8 @@ struct Moment {
 LoadResult<Moment> ReadMoment(const std::string& path, const std::vector<std::string_view>& columns,
                               std::optional<std::int64_t> at_ns) {
   Moment now, before;
-  const auto read = report::ReadCsv(path, columns, [&](const CsvFields& fields) {
-    const auto time_s = report::ToReal(fields[0]);
+  const auto read = ReadCsv(path, columns, [&](const CsvFields& fields) {
+    const auto time_s = ToReal(fields[0]);
     if (!time_s) return false;
     const std::int64_t time_ns = std::llround(*time_s * 1e9);
     if (at_ns && time_ns != *at_ns) {
@@ -39,7 +37,7 @@ LoadResult<Moment> ReadMoment(const std::string& path, const std::vector<std::st
       return true;
     }
     for (std::size_t i = 2; i < fields.size(); ++i) {
-      if (!report::ToReal(fields[i])) return false;
+      if (!ToReal(fields[i])) return false;
     }
     if (time_ns != now.at_ns) {
       before = std::exchange(now, {.before_ns = now.before_ns, .after_ns = now.after_ns});
@@ -65,7 +63,7 @@ std::string NextTo(const Moment& moment) {
 
 LoadResult<RecordedState> ReadState(const std::string& folder, std::optional<std::int64_t> at_ns) {
   const std::string bodies_csv = folder + "/bodies.csv", joints_csv = folder + "/joints.csv";
-  if (!report::IsFile(bodies_csv)) {
+  if (!IsFile(bodies_csv)) {
     return LoadError{bodies_csv + " does not exist; give the folder of a run that had a world"};
   }
   const auto bodies_at = [&bodies_csv](std::optional<std::int64_t> ns) {
@@ -80,7 +78,7 @@ LoadResult<RecordedState> ReadState(const std::string& folder, std::optional<std
   auto bodies = bodies_at(at_ns);
   if (const auto* error = std::get_if<LoadError>(&bodies)) return *error;
   LoadResult<Moment> joints = Moment{};
-  if (report::IsFile(joints_csv)) {
+  if (IsFile(joints_csv)) {
     joints = joints_at(at_ns);
     if (const auto* error = std::get_if<LoadError>(&joints)) return *error;
     // A run that was killed may have written more of the one than of the other.

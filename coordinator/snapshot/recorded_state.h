@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/errors/load_error.h"
 #include "coordinator/scenario/duration.h"
-#include "coordinator/scenario/load_error.h"
 
 namespace tcs::snapshot {
 

@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/snapshot/recorded_state.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::snapshot {
 namespace {
@@ -104,7 +104,7 @@ LoadResult<std::string> WorldAt(const std::string& folder, std::optional<std::in
   if (const auto* error = std::get_if<LoadError>(&read)) return *error;
   const auto& state = std::get<RecordedState>(read);
   const std::string scene_file = folder + "/scene.json";
-  const auto text = report::ReadFile(scene_file);
+  const auto text = ReadFile(scene_file);
   const Json scene = text ? Json::parse(*text, nullptr, false) : Json(Json::value_t::discarded);
   if (scene.is_discarded()) {
     return LoadError{scene_file + " cannot be read; give the folder of a run of this tcsim"};

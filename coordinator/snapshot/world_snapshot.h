@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "coordinator/scenario/load_error.h"
+#include "coordinator/errors/load_error.h"
 
 namespace tcs::snapshot {
 

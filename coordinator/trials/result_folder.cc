@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "coordinator/trials/outcome.h"
-#include "coordinator/trials/slurm/work_folder.h"
+#include "coordinator/trials/slurm_folder.h"
 
 namespace tcs {
 

@@ -15,11 +15,11 @@
 #include <utility>
 #include <variant>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/report/live_page.h"
 #include "coordinator/report/page.h"
 #include "coordinator/report/read_results.h"
 #include "coordinator/report/text.h"
+#include "coordinator/text/csv.h"
 #include "coordinator/view/wish.h"
 
 namespace tcs {
@@ -147,7 +147,7 @@ void ViewServer::Route() {
 
 bool ViewServer::HasEnded() const {
   if (control_ != nullptr) return control_->stage.load() == RunStage::kEnded;
-  return report::IsFile(folder_ + "/summary.json") || report::IsFile(folder_ + "/unfinished.json");
+  return IsFile(folder_ + "/summary.json") || IsFile(folder_ + "/unfinished.json");
 }
 
 void ViewServer::LookAtRun() {

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The table of folders in docs/ARCHITECTURE.md is true: every folder of the sources has a row, and
-includes what its row says and nothing else. A name of the last column that is no folder of the
+includes what its row says and nothing else. No folder includes one that includes it, whatever is
+between them. A name of the last column that is no folder of the
 project's is one in coordinator/; words without marks are for readers."""
 import re
 import sys
@@ -31,6 +32,57 @@ def rules() -> dict[str, list[str]]:
     return found
 
 
+def folders_included() -> dict[str, dict[str, str]]:
+    """For each folder, the others that it includes, with one line that does. The shim is one, and so is the bridge."""
+    def folder_of(path: str) -> str:
+        top = path.split("/")[0]
+        return top if top in ("libtcs_preload", "simbody_bridge") else path
+
+    found = {}
+    for top in TOPS:
+        for path in sorted((ROOT / top).rglob("*")):
+            if path.suffix not in SOURCES:
+                continue
+            of = folder_of(str(path.parent.relative_to(ROOT)))
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                include = re.match(r'\s*#\s*include "([^"]+/)[^"/]+"', line)
+                into = folder_of(include[1].rstrip("/")) if include else of
+                if into != of and into.split("/")[0] in TOPS:
+                    where = f"{path.relative_to(ROOT)}:{number}"
+                    found.setdefault(of, {}).setdefault(into, where)
+    return found
+
+
+def circle(included: dict[str, dict[str, str]]) -> list[str]:
+    """The folders of one circle, in order; none if there is none."""
+    done, way = set(), []
+
+    def walk(folder: str) -> list[str]:
+        if folder in way:
+            return way[way.index(folder):]
+        if folder in done:
+            return []
+        way.append(folder)
+        for into in included.get(folder, {}):
+            if found := walk(into):
+                return found
+        way.pop()
+        done.add(folder)
+        return []
+
+    return next((found for folder in included if (found := walk(folder))), [])
+
+
+def circles() -> list[str]:
+    included = folders_included()
+    found = circle(included)
+    if not found:
+        return []
+    pairs = zip(found, found[1:] + found[:1])
+    steps = [f"{of} includes {into} ({included[of][into]})" for of, into in pairs]
+    return ["folders include each other in a circle: " + ", ".join(steps)]
+
+
 def mistakes() -> list[str]:
     allowed = rules()
     if not allowed:
@@ -55,6 +107,6 @@ def mistakes() -> list[str]:
 
 
 if __name__ == "__main__":
-    found = mistakes()
+    found = mistakes() + circles()
     print("\n".join(found))
     sys.exit(1 if found else 0)

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "coordinator/channel/channel.h"
-#include "coordinator/channel/channels.h"
 #include "coordinator/channel/dds/ros_nodes.h"
+#include "coordinator/channel/transport.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/scenario/scenario.h"
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "coordinator/channel/channel.h"
-#include "coordinator/channel/channels.h"
+#include "coordinator/channel/transport.h"
 #include "coordinator/scenario/scenario.h"
 
 namespace tcs {

@@ -1,9 +1,9 @@
 #include "coordinator/cli/manual/generate.h"
 
-#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/basics/exit_status.h"
+#include "coordinator/cli/basics/version.h"
 #include "coordinator/cli/manual/completion.h"
 #include "coordinator/cli/manual/manual_page.h"
-#include "coordinator/cli/version.h"
 #include "coordinator/os/files.h"
 
 namespace tcs {

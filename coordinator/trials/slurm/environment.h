@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "coordinator/trials/slurm/work_folder.h"
+#include "coordinator/trials/slurm_folder.h"
 
 namespace tcs {
 

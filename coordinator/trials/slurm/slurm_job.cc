@@ -22,7 +22,7 @@
 #include "coordinator/trials/run_process.h"
 #include "coordinator/trials/slurm/array_jobs.h"
 #include "coordinator/trials/slurm/environment.h"
-#include "coordinator/trials/slurm/work_folder.h"
+#include "coordinator/trials/slurm_folder.h"
 #include "coordinator/trials/stop_signals.h"
 
 namespace tcs {

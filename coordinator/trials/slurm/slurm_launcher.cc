@@ -19,7 +19,7 @@
 #include "coordinator/trials/slurm/array_jobs.h"
 #include "coordinator/trials/slurm/commands.h"
 #include "coordinator/trials/slurm/environment.h"
-#include "coordinator/trials/slurm/work_folder.h"
+#include "coordinator/trials/slurm_folder.h"
 #include "coordinator/trials/stop_signals.h"
 #include "coordinator/trials/trial_folder.h"
 

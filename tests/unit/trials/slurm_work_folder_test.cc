@@ -8,7 +8,7 @@
 
 #include "coordinator/trials/outcome.h"
 #include "coordinator/trials/slurm/environment.h"
-#include "coordinator/trials/slurm/work_folder.h"
+#include "coordinator/trials/slurm_folder.h"
 
 namespace tcs {
 namespace {

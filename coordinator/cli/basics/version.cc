@@ -1,4 +1,4 @@
-#include "coordinator/cli/version.h"
+#include "coordinator/cli/basics/version.h"
 
 namespace tcs {
 

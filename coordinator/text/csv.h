@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "coordinator/scenario/load_error.h"
+#include "coordinator/errors/load_error.h"
 
-namespace tcs::report {
+namespace tcs {
 
 using CsvFields = std::vector<std::string_view>;
 
@@ -34,4 +34,4 @@ void SplitCsv(std::string_view line, CsvFields* fields);
 // The whole file; none if it cannot be read.
 [[nodiscard]] std::optional<std::string> ReadFile(const std::string& path);
 
-}  // namespace tcs::report
+}  // namespace tcs

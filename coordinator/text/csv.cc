@@ -1,4 +1,4 @@
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include <system_error>
 #include <utility>
 
-namespace tcs::report {
+namespace tcs {
 
 void SplitCsv(std::string_view line, CsvFields* fields) {
   fields->clear();
@@ -95,4 +95,4 @@ LoadResult<std::int64_t> ReadCsv(const std::string& path,
   return unusable;
 }
 
-}  // namespace tcs::report
+}  // namespace tcs

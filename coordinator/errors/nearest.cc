@@ -1,4 +1,4 @@
-#include "coordinator/scenario/nearest.h"
+#include "coordinator/errors/nearest.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "coordinator/core/world.h"
+#include "coordinator/world/world.h"
 
 #include <sys/socket.h>
 #include <time.h>

@@ -1,5 +1,5 @@
 // The one place that knows all transports.
-#include "coordinator/channel/channels.h"
+#include "coordinator/channel/open/channels.h"
 
 #include <utility>
 #include <variant>

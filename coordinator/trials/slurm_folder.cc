@@ -1,4 +1,4 @@
-#include "coordinator/trials/slurm/work_folder.h"
+#include "coordinator/trials/slurm_folder.h"
 
 #include <errno.h>
 #include <fmt/format.h>

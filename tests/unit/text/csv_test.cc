@@ -1,10 +1,10 @@
-#include "coordinator/report/csv.h"
+#include "coordinator/text/csv.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-namespace tcs::report {
+namespace tcs {
 namespace {
 
 class CsvTest : public ::testing::Test {
@@ -61,4 +61,4 @@ TEST(CsvNumbers, AreWholeAndFinite) {
 }
 
 }  // namespace
-}  // namespace tcs::report
+}  // namespace tcs

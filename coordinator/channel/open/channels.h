@@ -1,35 +1,17 @@
 // The open channels of a run, each on the transport that the scenario names.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "coordinator/channel/channel.h"
 #include "coordinator/channel/recorded/channel_records.h"
+#include "coordinator/channel/transport.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/scenario/scenario.h"
 
 namespace tcs {
-
-// What the channels of one kind have in common, if anything.
-class Transport {
- public:
-  virtual ~Transport() = default;
-  // The run begins; virtual CLOCK_REALTIME is so far ahead of virtual time.
-  virtual void Begin(VirtualDuration realtime_offset) = 0;
-};
-
-// A file that a robot's programs find under another name.
-struct FileAlias {
-  std::string robot;
-  std::string name;  // that they open
-  std::string file;  // that is opened instead
-};
-
-// Has a socket made where programs reach that IPv4 address.
-using MakeAt = std::function<void(const std::string& address, const std::function<void()>& make)>;
 
 struct Channels {
   std::vector<std::unique_ptr<Transport>> transports;  // outlive the rest

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/channel/channels.h"
+#include "coordinator/channel/open/channels.h"
 #include "coordinator/channel/recorded/channel_records.h"
 #include "coordinator/record/message_sink.h"
 #include "coordinator/scenario/scenario.h"
