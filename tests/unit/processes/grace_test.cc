@@ -14,13 +14,17 @@ class GraceTest : public testing::Test {
   struct Living {
     ClientSpec spec;
     Process* process = nullptr;
+    Task* task = nullptr;
   };
   void Add(Living& client, VirtualDuration grace) {
     client.spec.stop_grace = grace;
     client.process = &run_.table.AddProcess(next_pid_);
     client.process->client = client.process;
     client.process->spec = &client.spec;
-    run_.table.AddTask(next_pid_++).process = client.process;
+    client.process->robot = &robot_;
+    client.task = &run_.table.AddTask(next_pid_++);
+    client.task->process = client.process;
+    robot_.tasks.push_back(client.task);
   }
   void SetUp() override {
     run_.grace_began = At(10 * kSecond);
@@ -31,6 +35,8 @@ class GraceTest : public testing::Test {
   pid_t next_pid_ = 1'000'000'000;  // of no process
   Living slow_, quick_;
   RunState run_{Scenario{}, RunOptions{}, false};
+  Robot& robot_ = run_.robots.emplace_back(
+      "robot", 1.0, RobotScheduler(1, true, [](int) { return RobotScheduler::Wait{}; }));
   Reactor reactor_;
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{run_.table, reactor_, unmanaged_};
@@ -51,6 +57,31 @@ TEST_F(GraceTest, OneThatIsStoppedByAKillHasNone) {
   slow_.spec.stop_signal = SIGKILL;
   ASSERT_TRUE(grace_.GoOnToNextKill());
   EXPECT_EQ(run_.end, At(10 * kSecond));
+}
+
+// What a thread has computed out of its turns passes without it.
+TEST_F(GraceTest, BeginsAfterWhatAThreadOwes) {
+  quick_.task->debt = kSecond / 2;
+  grace_.Begin();
+  ASSERT_TRUE(grace_.GoOnToNextKill());
+  EXPECT_EQ(run_.end, At(11 * kSecond + kSecond / 2));
+}
+
+// Virtual time has not waited for it; no real time has passed to speak of.
+TEST_F(GraceTest, OfOneThatTheKernelHasLastsInRealTimeToo) {
+  slow_.process->dead = true;
+  grace_.Begin();
+  quick_.task->state = TaskState::kUnseen;
+  ASSERT_TRUE(grace_.GoOnToNextKill());
+  EXPECT_TRUE(grace_.KillOverdue());
+  EXPECT_FALSE(quick_.process->killed);
+  ASSERT_TRUE(grace_.GoOnToNextKill());
+  EXPECT_GT(run_.end, At(11 * kSecond));
+  EXPECT_LE(run_.end, At(12 * kSecond));
+  // It has come back, and has not ended in what was left.
+  quick_.task->state = TaskState::kReady;
+  EXPECT_FALSE(grace_.KillOverdue());
+  EXPECT_TRUE(quick_.process->killed);
 }
 
 TEST_F(GraceTest, IsOverWhenNoRealTimeIsLeft) {
