@@ -55,7 +55,7 @@ auto SendSignal(Receiver receiver, int signal, std::uint32_t by, Call call) {
 
 // Sends one as SendSignal's call. Where only gates keep threads apart it must come to no thread
 // that is about to make a call which the kernel hands over: once more it is the coordinator's turn,
-// who sees to that (gates_only.cc). The C library's calls are handed over themselves.
+// who sees to that (engine/gate_keeper.h). The C library's calls are handed over themselves.
 template <class... Args>
 long SendRaw(long number, Args... args) {
   GuestThread* t = IfAttached();

@@ -3,10 +3,10 @@
 //
 // It takes real time, and virtual time leaps over whatever it can. So from a request on, while
 // somebody waits or has looked for what is to come, nobody passes the virtual time that the real
-// time since then stands for: a leaf of the scheduler tree stands there (core/outside.cc). What
-// came after a real time d is seen at the request's time + d x outside_speed, neither before, where
-// the run is slower than real time, nor after. Under set costs it takes what was set, and virtual
-// time stands at its end until it is there.
+// time since then stands for: a leaf of the scheduler tree stands there (engine/outside_leaf.h).
+// What came after a real time d is seen at the request's time + d x outside_speed, neither before,
+// where the run is slower than real time, nor after. Under set costs it takes what was set, and
+// virtual time stands at its end until it is there.
 //
 // A request is the first sending by such a socket since the program last took something from it;
 // of devices and of what is named, the beginning of a wait or a look, or of an ioctl that waits.

@@ -1,5 +1,5 @@
 // Signals from one robot to another: what has them wait for turns of the receiver's that have begun
-// before their order (core/turns_beside.h). As where a socket is reached for the first time
+// before their order (engine/turns_beside.h). As where a socket is reached for the first time
 // (local_sockets.h), that takes at most one drift bound, once.
 #pragma once
 

@@ -4,7 +4,7 @@
 
 #include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
-#include "coordinator/core/failures.h"
+#include "coordinator/engine/failures.h"
 
 namespace tcs {
 

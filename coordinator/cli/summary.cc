@@ -11,7 +11,7 @@
 #include "coordinator/cli/figures_json.h"
 #include "coordinator/cli/metrics_text.h"
 #include "coordinator/cli/print.h"
-#include "coordinator/core/failures.h"
+#include "coordinator/engine/failures.h"
 #include "coordinator/expect/expect_json.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/say.h"

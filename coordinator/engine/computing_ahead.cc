@@ -1,4 +1,4 @@
-#include "coordinator/core/computing_ahead.h"
+#include "coordinator/engine/computing_ahead.h"
 
 #include <x86gprintrin.h>
 #include <xmmintrin.h>

@@ -1,4 +1,4 @@
-#include "coordinator/core/deadlocks.h"
+#include "coordinator/engine/deadlocks.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "coordinator/core/locks.h"
+#include "coordinator/engine/locks.h"
 
 namespace tcs {
 

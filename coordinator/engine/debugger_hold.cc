@@ -1,4 +1,4 @@
-#include "coordinator/core/debugger_hold.h"
+#include "coordinator/engine/debugger_hold.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "coordinator/core/failures.h"
+#include "coordinator/engine/failures.h"
 
 #include <fmt/format.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "coordinator/core/locks.h"
+#include "coordinator/engine/locks.h"
 
 #include <sys/epoll.h>
 

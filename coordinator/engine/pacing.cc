@@ -1,4 +1,4 @@
-#include "coordinator/core/pacing.h"
+#include "coordinator/engine/pacing.h"
 
 #include <algorithm>
 #include <utility>

@@ -12,6 +12,7 @@
 
 #include "coordinator/policy/pacer.h"
 #include "coordinator/tasks/coordinator.h"
+#include "coordinator/tasks/run_clock.h"
 
 namespace tcs {
 
@@ -32,6 +33,8 @@ class Pacing {
   const Pacer& pacer() const { return pacer_; }
   // Of the real time since the run began, for how long it was held back.
   HostDuration held() const { return held_; }
+  // The host's time without that: nobody is to be taken for standing still who was held.
+  HostTime RunningTime() const { return RunClock::Now() - held_; }
   PaceReport Report() const;
 
  private:

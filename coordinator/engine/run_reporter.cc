@@ -1,13 +1,13 @@
-#include "coordinator/core/run_reporter.h"
+#include "coordinator/engine/run_reporter.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "coordinator/answers/verdict.h"
-#include "coordinator/core/deadlocks.h"
-#include "coordinator/core/failures.h"
 #include "coordinator/dds/topics_table.h"
+#include "coordinator/engine/deadlocks.h"
+#include "coordinator/engine/failures.h"
 #include "coordinator/processes/slot_check.h"
 #include "coordinator/text/spoken.h"
 

@@ -7,7 +7,7 @@
 
 #include "coordinator/calls/datagram_queues.h"
 #include "coordinator/calls/dds_records.h"
-#include "coordinator/core/pacing.h"
+#include "coordinator/engine/pacing.h"
 #include "coordinator/processes/launches.h"
 #include "coordinator/processes/usage_book.h"
 #include "coordinator/queues/futex_table.h"

@@ -1,4 +1,4 @@
-#include "coordinator/core/state_dump.h"
+#include "coordinator/engine/state_dump.h"
 
 #include <fmt/format.h>
 #include <sched.h>

@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <string>
 
-#include "coordinator/core/computing_ahead.h"
-#include "coordinator/core/pacing.h"
 #include "coordinator/dds/hub.h"
 #include "coordinator/dump/state_link.h"
+#include "coordinator/engine/computing_ahead.h"
+#include "coordinator/engine/pacing.h"
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/network/robot_network.h"
 #include "coordinator/processes/launches.h"

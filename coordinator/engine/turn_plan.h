@@ -3,7 +3,7 @@
 // what the thread has computed already, how far the world is to be taken ahead meanwhile, and
 // whether the thread counts as one that computes.
 //
-// The loop (engine.cc) does it. Pure: makes no system call, reads no clock.
+// loop.h does it. Pure: makes no system call, reads no clock.
 #pragma once
 
 #include <algorithm>

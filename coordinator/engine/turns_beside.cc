@@ -1,4 +1,4 @@
-#include "coordinator/core/turns_beside.h"
+#include "coordinator/engine/turns_beside.h"
 
 #include <x86gprintrin.h>
 #include <xmmintrin.h>

@@ -24,7 +24,7 @@
 #include <memory>
 #include <vector>
 
-#include "coordinator/core/computing_ahead.h"
+#include "coordinator/engine/computing_ahead.h"
 #include "coordinator/host/beside_cpu.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/processes/run_records.h"

@@ -7,7 +7,7 @@
 // Under set costs each of them is told by a signal to go to its gate (in the shim, preemption.h):
 // when it comes to run, it does so before it executes anything of its program's. At its dispatch it
 // goes on from there, or, if it has not run until then, from where it stands. Without levels,
-// core/gates_only.cc does it.
+// engine/gate_keeper.h does it.
 //
 // For the coordinator's thread only. Reads /proc.
 #pragma once

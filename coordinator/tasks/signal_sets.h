@@ -8,7 +8,7 @@
 
 namespace tcs {
 
-// Without the one that the coordinator has sent it (gates_only.cc, undispatched_threads.h), which
+// Without the one that the coordinator has sent it (gate_keeper.h, undispatched_threads.h), which
 // is nothing of its program's. One of this number that it was not sent is the C library's: every
 // thread has to handle it, whatever it waits in. At its gate a thread blocks more than its program
 // does, until it waits there.

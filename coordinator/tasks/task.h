@@ -150,7 +150,7 @@ struct Task : HostThread {
   // Its gate has been opened, and nothing that it has said since has been heard.
   bool is_let_go = false;
   bool has_signal = false;          // ours, to go to its gate, unless it has handled it by now
-  bool is_put_off = false;          // has notified, and is heard later (gates_only.cc),
+  bool is_put_off = false;          // has notified, and is heard later (gate_keeper.h),
   bool is_call_put_off = false;     // or its trapped call has been received, and is taken later
   shm::WorkCounts work{};           // so far,
   std::uint64_t trapped_calls = 0;  // with those of its calls that the shim has not seen
@@ -273,7 +273,8 @@ struct Robot {
   bool is_ours = false;        // tcsim's own: no run goes on for its programs
   bool is_reached = false;     // nothing is local to it any more (calls/local_sockets.h)
   std::uint64_t acts = 0;      // turns of its threads that did more than spin
-  bool is_disturbed = false;   // others than its own programs send it signals (core/turns_beside.h)
+  bool is_disturbed =
+      false;  // others than its own programs send it signals (engine/turns_beside.h)
   RobotScheduler scheduler;
   VirtualTime next_launch = VirtualTime::Never();  // when the next client of its starts
   std::vector<VirtualCpu*> cpus;                   // by core

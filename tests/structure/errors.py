@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 FOLDER = ROOT / "coordinator"
 
 # Of a run, while it goes on.
-NEVER_THROW = ("calls", "core", "host", "network", "os", "policy", "processes", "queues", "tasks", "trace", "world")
+NEVER_THROW = ("calls", "engine", "host", "network", "os", "policy", "processes", "queues", "tasks", "trace", "world")
 CLOSES = {"os/unique_fd.h": "the owner of descriptors", "os/files.cc": "tells whether a file was written whole"}
 
 SENTENCE = re.compile(r"empty on success", re.IGNORECASE)

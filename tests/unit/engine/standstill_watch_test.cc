@@ -1,4 +1,4 @@
-#include "coordinator/core/standstill_watch.h"
+#include "coordinator/engine/standstill_watch.h"
 
 #include <gtest/gtest.h>
 

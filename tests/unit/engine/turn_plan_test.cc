@@ -1,5 +1,5 @@
 // What is decided of a virtual CPU's next turn: tables, one case a line.
-#include "coordinator/core/turn_plan.h"
+#include "coordinator/engine/turn_plan.h"
 
 #include <gtest/gtest.h>
 

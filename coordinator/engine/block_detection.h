@@ -1,0 +1,26 @@
+// The block detector says that the running thread does not run: what that means.
+#pragma once
+
+#include "coordinator/engine/engine_part.h"
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+class BlockDetection : public EnginePart {
+ public:
+  using EnginePart::EnginePart;
+
+  // The running thread does not run. True if others get their turn; otherwise it is waited for: it
+  // is starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
+  bool LetsOthersRun();
+
+  // Without the detector the first thread that waits in the kernel would make everybody wait with
+  // it: the run fails.
+  void DetectorEnded();
+  void LookAtDetector();
+
+ private:
+  bool CutsOff(Task& task);
+};
+
+}  // namespace tcs

@@ -1,0 +1,24 @@
+// What a thread's clock page says of its next turn.
+#pragma once
+
+#include <cstdint>
+
+#include "coordinator/engine/engine_part.h"
+#include "coordinator/host/clock_grant.h"
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+class ClockPages : public EnginePart {
+ public:
+  using EnginePart::EnginePart;
+
+  void Write(Task& task, VirtualTime horizon, VirtualTime idle_until);
+  // What the thread may do without asking.
+  void GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const;
+
+ private:
+  std::int64_t ChargedUndispatched(const Task& task) const;
+};
+
+}  // namespace tcs

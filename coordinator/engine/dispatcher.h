@@ -1,0 +1,46 @@
+// One turn of a thread, from its beginning to the answer to what the thread has said. While it
+// lasts RunState::turn says what is known of it.
+#pragma once
+
+#include "coordinator/engine/engine_part.h"
+#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+class Dispatcher : public EnginePart {
+ public:
+  using EnginePart::EnginePart;
+
+  // Runs the thread up to its horizon, charges it for what it did, and answers it. `idle_until`: it
+  // may sleep that far without asking.
+  void Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until);
+
+  // The running thread has woken one of another computer, which does not need its core. It goes on,
+  // as far as that one now allows.
+  void GoOnBesideWoken();
+  void AnswerCall(Task& task);
+
+  // What turns have in common, wherever the thread has them (early_turns.h).
+  static void NoteTurnBegins(Task& task);
+  void EndTurn(Task& task);
+  // Who is concerned by how the turn has passed, whatever its thread wants now. Its calls were made
+  // at `call`.
+  void TellOthersOf(Task& task, Moment call, bool looks_again);
+  // What the thread has said at the end of its turn.
+  void Answer(Task& task);
+
+ private:
+  bool AnswerEarly(Task& task);
+  void BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until);
+  void Resume(Task& task);
+  void AwaitStop(Task& task);
+  HostDuration TimeToLook(Task& task);
+  ProgramTime OwnHorizon() const;
+  bool HasMadeCall(Task& task, int* turns);
+  bool GivesUpStart(Task& task, int turns);
+  void ChargeSilence(Task& task);
+  void LookForUntoldSignals(const Task& task, Moment stop);
+};
+
+}  // namespace tcs

@@ -1,0 +1,210 @@
+#include "coordinator/engine/gate_keeper.h"
+
+#include <time.h>
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "coordinator/engine/wiring.h"
+#include "coordinator/os/host.h"
+#include "coordinator/tasks/cpu_clock.h"
+
+namespace tcs {
+
+namespace {
+
+// The processor time that a thread has to handle the signal.
+constexpr HostDuration kMostWayToGate = HostDuration::Microseconds(100);
+
+// The same where a handler begins that ends a wait: it may be the first one since a fork, and what
+// it touches on its way be copied page by page, or be in nobody's cache any more.
+constexpr HostDuration kMostWayFromWait = HostDuration::Milliseconds(1);
+
+// The real time for that: on a busy host others may go first for many slices.
+constexpr HostDuration kMostStarved = HostDuration::Seconds(5);
+constexpr HostDuration kGateLook = HostDuration::Microseconds(500);
+constexpr HostDuration kShortGateLook =
+    HostDuration::Microseconds(50);  // at one that is there soon
+constexpr int kMostAtOnce = 1000;    // events of one instant
+
+// The thread, which is about to go on, sends a signal at once: its shim says so, or the kernel
+// carries out the call.
+bool SendsSignal(const Task& task) {
+  if (task.slot < 0) return false;
+  if (task.trap_id == 0) {
+    const shm::ThreadSlot& slot = SlotOf(task);
+    return slot.signals.load() != 0 && slot.note.kind == shm::NotificationKind::kCall;
+  }
+  return task.trap_continues && task.trapped_call.id == task.trap_id &&
+         SendsSignal(task.trapped_call);
+}
+
+// It is not dispatched, and has stopped neither at its gate nor in a call that was received.
+bool MayCompute(const Task& task) {
+  const bool has_stopped = task.parked || task.trap_id != 0 || task.early_trap.has_value() ||
+                           task.notified_early || task.is_put_off || task.is_call_put_off;
+  return task.state != TaskState::kDead && task.slot >= 0 && task.can_be_stopped && !has_stopped &&
+         !task.executes && !task.process->expelled;
+}
+
+// It waits at its gate, as it has said, but does not sleep there: it is on its way, or a handler
+// that it runs will end the wait.
+bool IsAwakeAtGate(const Task& task) {
+  return task.state == TaskState::kWaiting && task.slot >= 0 && task.parked && task.trap_id == 0 &&
+         !task.process->expelled && ThreadState(task.tid) == 'R';
+}
+
+}  // namespace
+
+bool GateKeeper::PutOff(const Task* by, Late late) {
+  if (!run_.gates_only || (run_.turn.lasts() && by == run_.turn.task())) return false;
+  if (!run_.turn.lasts() && put_off_.empty()) return false;  // nothing came before it
+  put_off_.push_back(std::move(late));
+  return true;
+}
+
+Reactor::Found GateKeeper::TakePutOff(Moment moment) {
+  Reactor::Found found;
+  for (const Late& late : std::exchange(put_off_, {})) found |= late(moment);
+  return found;
+}
+
+bool GateKeeper::MayGoOn(Task& task) {
+  if (run_.turn.is_sent_to_gate) return false;
+  const shm::ThreadSlot& slot = SlotOf(task);
+  HostCpu::FollowOrigin(task);
+  if (slot.note.kind != shm::NotificationKind::kCall) return false;
+  says_call_ = true;
+  return true;
+}
+
+void GateKeeper::OpenGate(Task& task) {
+  task.is_let_go = run_.gates_only;
+  HostCpu::AllowWay(task);
+  HostCpu::OpenGate(SlotOf(task));
+}
+
+// A thread may begin to say that a handler ends its wait, and be dispatched before it has said it.
+// It does not stop for that, and goes on to what it says next: what it has noted may be that, or
+// what the handler interrupted. The pipe keeps the order, so that the gate was open already if
+// nothing else has been said since that opened.
+bool GateKeeper::IsSaidBeforeTurn(Task& task, const shm::PipeMessage& message) {
+  if (message.ends_wait == 0) task.is_let_go = false;
+  return task.is_let_go;
+}
+
+Reactor::Found GateKeeper::EndCall(Reactor::Found found) {
+  if (!run_.turn.lasts() || !says_call_) return found;
+  const Moment moment{run_.WrittenAt()};
+  found |= TakePutOff(moment);
+  while (std::exchange(found.looks_again, false))
+    found |= all_.event_pump.LookOnce(EventPump::kNoWait, moment, true);
+  if (!found.stops_running) found |= BringOthersToGates(*run_.turn.task(), moment);
+  says_call_ = false;
+  if (found.stops_running) {
+    Task& task = *run_.turn.task();
+    task.parked = true;
+    // It was found held by the kernel, and has come back at the same instant.
+    if (task.state == TaskState::kUnseen) all_.waker.SetState(task, TaskState::kReady);
+  } else {
+    opens_gate_ = true;
+  }
+  return found;
+}
+
+// The running thread is to stop, and has not said anything: it computes. It is told to go to its
+// gate, and waited for, so that nobody runs beside it. Where it does not come (its program blocks
+// the signal, or the kernel has it) it computes on, and owes what it computes.
+void GateKeeper::BringToGate(Task& task) {
+  // Where computing costs nothing, it may compute on, unless it pays for that (fixed_meter.h).
+  const bool is_charged =
+      run_.Preempts() || (run_.gates_only && task.metered.pays_for_silence && run_.turn.timed_out);
+  const bool computes = is_charged && task.slot >= 0 && Waker::IsRunnable(task) && !task.parked &&
+                        !run_.turn.HasSpoken() && !task.is_brief && task.can_be_stopped &&
+                        !task.executes && !task.process->expelled;
+  if (!computes || !task.HasOwnClock() || ThreadState(task.tid) != 'R') return;
+  const HostDuration sent = HostNs(HostClockOf(task));
+  run_.turn.is_sent_to_gate = task.has_signal = true;
+  HostCpu::SendToGate(task.process->pid, task);
+  const HostDuration until = HostNs(CLOCK_MONOTONIC) + kMostStarved;
+  while (HostNs(CLOCK_MONOTONIC) < until) {
+    all_.event_pump.Poll(kGateLook, {});
+    if (run_.turn.HasSpoken() || !Waker::IsRunnable(task) || task.process->dead) return;
+    if (HostNs(HostClockOf(task)) > sent + kMostWayToGate || ThreadState(task.tid) != 'R') return;
+  }
+}
+
+// The kernel keeps a signal from a thread in a trapped call once that has been received. Before,
+// the signal's handler would run at once, in the middle of another thread's turn, and the call be
+// made again. So nobody may be about to make one when a thread goes on that sends a signal: those
+// that compute are told to go to their gates, which restarts what they have just called, and are
+// waited for as in BringToGate.
+Reactor::Found GateKeeper::BringOthersToGates(const Task& sender, Moment moment) {
+  if (!SendsSignal(sender)) return {};
+  const auto computes = [&sender](const Task& task) {
+    return &task != &sender && MayCompute(task) && ThreadState(task.tid) == 'R';
+  };
+  Reactor::Found found =
+      AwaitThreads(moment, {kGateLook, kMostWayToGate}, computes, [](Task& task) {
+        task.has_signal = true;
+        HostCpu::SendToGate(task.process->pid, task);
+      });
+  found |= AwaitSleepAtGates(moment);
+  for (int turn = 0; turn < kMostAtOnce && all_.reactor.HasMore(); ++turn) {
+    found |= all_.event_pump.LookOnce(EventPump::kNoWait, moment, true);
+  }
+  return found;
+}
+
+// Before and after a signal is sent. A thread that has said that it waits, and has yet to fall
+// asleep, may run the handler at once: then no signal is there for it any more, and only the thread
+// itself can tell that its wait is over. The world must not go on past that.
+Reactor::Found GateKeeper::AwaitSleepAtGates(Moment moment) {
+  return AwaitThreads(moment, {kShortGateLook, kMostWayFromWait}, IsAwakeAtGate, [](Task&) {});
+}
+
+// A thread that was looked at for a signal, and had none, may be running the handler already.
+// Whoever has sent the signal (a program by the shim or past it, the kernel because a child has
+// ended), nobody has a turn before that is known, which might be one long sleep by its own clock
+// alone, and no time is jumped over. Who has told it sleeps, and has yet to be heard.
+void GateKeeper::AwaitHandlers() {
+  while (const std::optional<Moment> look = all_.signal_wakes.TakeLook()) {
+    if (!run_.gates_only) return;
+    AwaitSleepAtGates(*look);
+    all_.event_pump.Poll(EventPump::kNoWait, *look);
+  }
+}
+
+// All of that happens at the moment. `at_first` is done with each once.
+Reactor::Found GateKeeper::AwaitThreads(Moment moment, const WayToGate& way,
+                                        const std::function<bool(const Task&)>& is_awaited,
+                                        const std::function<void(Task&)>& at_first) {
+  Reactor::Found found;
+  std::map<const Task*, HostDuration> first_seen;
+  bool awaits = true;
+  const HostDuration until = HostNs(CLOCK_MONOTONIC) + kMostStarved;
+  while (awaits && HostNs(CLOCK_MONOTONIC) < until) {
+    awaits = false;
+    for (Task& task : run_.table.tasks()) {
+      if (!is_awaited(task)) continue;
+      const HostDuration now = HostNs(HostClockOf(task));
+      const auto [first, is_new] = first_seen.try_emplace(&task, now);
+      if (is_new) at_first(task);
+      awaits |= now <= first->second + way.most;
+    }
+    if (awaits) found |= all_.event_pump.LookOnce(way.look_every, moment, true);
+  }
+  return found;
+}
+
+// What the thread has computed since its last turn ended, or while it was taken to be stopped, is a
+// debt like what it computes beyond its horizon. Levels let nobody compute then, but while the run
+// is held back.
+void GateKeeper::ChargeUndispatched(Task& task) {
+  const bool may_have_computed = run_.Preempts() || (all_.pacing.IsOn() && !run_.IsFixed());
+  if (!may_have_computed || task.slot < 0) return;
+  run_.ChargeAsDebt(task, HostCpu::Uncharged(task, task.charged, CpuClockOf(task)));
+}
+
+}  // namespace tcs

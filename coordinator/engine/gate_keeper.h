@@ -1,0 +1,67 @@
+// Running without the right to real-time priorities: nothing but its gate keeps a thread that is
+// not dispatched from running. Its calls begin there, so that all it can do by itself is compute,
+// which its clock does not show. What such threads do get the coordinator to hear is put off until
+// the dispatched one has come to the end of what it does to others. It says so where its next call
+// begins (kCall): until then its clock stands at the time of its last call, and what it has made
+// ready becomes ready at that time, however late the coordinator looks.
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "coordinator/engine/engine_part.h"
+#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/task.h"
+#include "shm/attach_protocol.h"
+
+namespace tcs {
+
+class GateKeeper : public EnginePart {
+ public:
+  using EnginePart::EnginePart;
+  using Late = std::function<Reactor::Found(Moment)>;
+
+  void TurnBegins() { says_call_ = opens_gate_ = false; }
+  // The running thread has said that a call begins, and waits for the answer.
+  bool says_call() const { return says_call_; }
+  // Of the running thread's: true if it does not end its turn.
+  bool MayGoOn(Task& task);
+  // All events of this instant have been handled. If nobody has to run instead, the running thread
+  // goes on with its call.
+  Reactor::Found EndCall(Reactor::Found found);
+  // True once, if it is to go on.
+  bool TakesOpening() { return std::exchange(opens_gate_, false); }
+  void OpenGate(Task& task);
+
+  // True if what `by` does happens later.
+  bool PutOff(const Task* by, Late late);
+  Reactor::Found TakePutOff(Moment moment);
+  // What the message says was said before the thread's turn, which is its answer.
+  bool IsSaidBeforeTurn(Task& task, const shm::PipeMessage& message);
+
+  // The running thread is to stop, and has not said anything.
+  void BringToGate(Task& task);
+  // Before `sender`, which sends a signal, goes on: nobody else may be about to make a call.
+  Reactor::Found BringOthersToGates(const Task& sender, Moment moment);
+  // Threads that were looked at for a signal may be running its handler already.
+  void AwaitHandlers();
+  // What the thread has computed since its last turn ended is a debt.
+  void ChargeUndispatched(Task& task);
+
+ private:
+  struct WayToGate {
+    HostDuration look_every;
+    HostDuration most;  // that it takes a thread, by its CPU clock
+  };
+  Reactor::Found AwaitSleepAtGates(Moment moment);
+  Reactor::Found AwaitThreads(Moment moment, const WayToGate& way,
+                              const std::function<bool(const Task&)>& is_awaited,
+                              const std::function<void(Task&)>& at_first);
+
+  bool says_call_ = false, opens_gate_ = false;
+  std::vector<Late> put_off_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,156 @@
+#include "coordinator/engine/kernel_events.h"
+
+#include <sys/epoll.h>
+#include <x86gprintrin.h>
+
+#include <algorithm>
+
+#include "coordinator/engine/wiring.h"
+#include "coordinator/os/open_file_limit.h"
+#include "shm/clock_page.h"
+
+namespace tcs {
+
+void KernelEvents::Register() {
+  const auto on = [this](Tag tag,
+                         Reactor::Found (KernelEvents::*handler)(Subject, std::uint32_t, Moment)) {
+    all_.reactor.On(tag,
+                    [this, handler](const Subject& subject, std::uint32_t events, Moment moment) {
+                      return (this->*handler)(subject, events, moment);
+                    });
+  };
+  on(Tag::kPipe, &KernelEvents::OnPipe);
+  on(Tag::kListener, &KernelEvents::OnListener);
+  on(Tag::kConnection, &KernelEvents::OnConnection);
+  on(Tag::kProcess, &KernelEvents::OnProcessEnd);
+  on(Tag::kAwaited, &KernelEvents::OnAwaited);
+  on(Tag::kUnknownChild, &KernelEvents::OnUnknownChildEnd);
+  on(Tag::kTrap, &KernelEvents::OnTrap);
+  on(Tag::kCommand, &KernelEvents::OnCommand);
+  on(Tag::kNetwork, &KernelEvents::OnNetwork);
+  on(Tag::kSignal, &KernelEvents::OnSignal);
+  on(Tag::kGraceRanOut, &KernelEvents::OnGraceRanOut);
+  on(Tag::kDetector, &KernelEvents::OnDetector);
+  on(Tag::kDetectorEnd, &KernelEvents::OnDetectorEnd);
+  on(Tag::kStateAsked, &KernelEvents::OnStateAsked);
+  on(Tag::kOutside, &KernelEvents::OnOutside);
+}
+
+Reactor::Found KernelEvents::OnPipe(Subject process, std::uint32_t, Moment moment) {
+  return all_.notification_receiver.Take(run_.table.ProcessAt(process.index), moment);
+}
+
+Reactor::Found KernelEvents::OnListener(Subject listener, std::uint32_t, Moment) {
+  if (all_.sockets.Accept(listener.index)) return {};
+  if (run_.report.error.empty()) run_.report.error = WhyNoFurtherFile();
+  return kConcernsAll;
+}
+
+Reactor::Found KernelEvents::OnConnection(Subject subject, std::uint32_t, Moment moment) {
+  const bool registers = all_.registration.Heard(static_cast<int>(subject.index), moment);
+  return registers ? kConcernsAll : Reactor::Found{};
+}
+
+Reactor::Found KernelEvents::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
+  Process& ended = run_.table.ProcessAt(process.index);
+  if (TurnsBeside::NoteDeathIn(ended)) {
+    all_.reactor.Remove(ended.pidfd.get());
+    return {};
+  }
+  const bool runs = run_.turn.IsIn(ended);
+  moment.at = std::max(moment.at, all_.ahead.EndOfDebt(ended));
+  const auto end = [this, process](Moment at) {
+    all_.deaths.ProcessEnded(process.index, at);
+    return kConcernsAll;
+  };
+  if (!all_.gate_keeper.PutOff(runs ? run_.turn.task() : nullptr, end)) return end(moment);
+  all_.reactor.Remove(run_.table.ProcessAt(process.index).pidfd.get());  // it is readable for ever
+  return {};
+}
+
+Reactor::Found KernelEvents::OnAwaited(Subject subject, std::uint32_t, Moment) {
+  Task& task = run_.table.At(static_cast<int>(subject.index));
+  auto* wait = task.Awaits<awaited::Descriptors>();
+  if (wait == nullptr || subject != DescriptorWaits::SubjectOf(task, *wait)) return {};
+  // What comes in a later look is news: what was there may have gone before it was looked for.
+  if (wait->skips_in != 0 && wait->skips_in + 1 >= all_.reactor.next_look()) return {};
+  all_.event_pump.NoteReady(task);
+  return {.wakes_others = true};
+}
+
+Reactor::Found KernelEvents::OnOutside(Subject file, std::uint32_t, Moment moment) {
+  all_.outside.HasCome(file, all_.pacing.RunningTime(),
+                       all_.outside_leaf.awaits() ? moment.at : VirtualTime());
+  all_.outside_leaf.Update();
+  return {};
+}
+
+Reactor::Found KernelEvents::OnUnknownChildEnd(Subject child, std::uint32_t, Moment moment) {
+  const auto pid = static_cast<pid_t>(child.index);
+  if (Process* parent = all_.unknown_children.Ended(pid); parent != nullptr) {
+    all_.stops.ChildChanged(*parent, pid, false, moment);
+  }
+  return kConcernsAll;
+}
+
+Reactor::Found KernelEvents::OnTrap(Subject subject, std::uint32_t events, Moment moment) {
+  const auto listener = static_cast<int>(subject.index);
+  if ((events & EPOLLIN) == 0) {
+    all_.traps.Close(listener);
+    return {};
+  }
+  return all_.trap_receiver.Arrived(listener, moment);
+}
+
+Reactor::Found KernelEvents::OnCommand(Subject channel, std::uint32_t, Moment moment) {
+  CommandSender from;
+  if (run_.turn.HasClock()) {
+    Task& task = *run_.turn.task();
+    // What it has posted it has sent before.
+    if (const char* what = all_.posted.Take(task); what != nullptr) {
+      all_.expulsion.Expel(*task.process, what);
+      return {.stops_running = true};
+    }
+    from = {static_cast<std::uint64_t>(task.tid),
+            shm::RunTime(SlotOf(task).clock, all_.host_cpu.ClockOf(task))};
+  }
+  all_.world.ReceiveCommands(channel.index, moment.at, from);
+  return {};
+}
+
+// The thread that has sent goes on, as far as those allow who receive it.
+Reactor::Found KernelEvents::OnNetwork(Subject robot, std::uint32_t, Moment moment) {
+  all_.network.Take(robot.index, moment.at);
+  all_.network_leaf.Update();
+  if (run_.turn.lasts() && run_.turn.HasClock()) all_.dispatcher.GoOnBesideWoken();
+  return {};
+}
+
+Reactor::Found KernelEvents::OnSignal(Subject, std::uint32_t, Moment) {
+  return {.stops_running = all_.end_requests.Take(run_)};
+}
+
+Reactor::Found KernelEvents::OnGraceRanOut(Subject, std::uint32_t, Moment) {
+  all_.grace.RanOut();
+  return {.stops_running = true};
+}
+
+Reactor::Found KernelEvents::OnDetector(Subject, std::uint32_t, Moment) {
+  if (!all_.host_cpu.detector().TakeFired()) return {};
+  all_.host_cpu.active().TakeBack();
+  return {.blocks_running = true};
+}
+
+Reactor::Found KernelEvents::OnDetectorEnd(Subject, std::uint32_t, Moment) {
+  all_.block_detection.DetectorEnded();
+  return {.stops_running = true};
+}
+
+// Nothing comes of it for the run.
+Reactor::Found KernelEvents::OnStateAsked(Subject, std::uint32_t, Moment) {
+  if (all_.state_link.TakeAsked())
+    all_.state_link.Answer(all_.state_dump.Text(all_.home_processor.cpu(), __rdtsc()));
+  return {};
+}
+
+}  // namespace tcs

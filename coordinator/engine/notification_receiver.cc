@@ -1,0 +1,72 @@
+#include "coordinator/engine/notification_receiver.h"
+
+#include <unistd.h>
+
+#include "coordinator/engine/wiring.h"
+#include "coordinator/tasks/cpu_clock.h"
+#include "shm/attach_protocol.h"
+
+namespace tcs {
+
+Reactor::Found NotificationReceiver::Arrived(Task& task, Moment moment) {
+  task.executes = false;
+  if (SlotOf(task).note.kind == shm::NotificationKind::kPreempted) task.has_signal = false;
+  if (all_.undispatched.WentToGate(task)) return {};
+  all_.ahead.HasSpoken(task);
+  if (run_.turn.IsOf(task)) {
+    if (run_.gates_only && all_.gate_keeper.MayGoOn(task)) return {.looks_again = true};
+    run_.turn.notified = true;
+  } else if (task.state == TaskState::kWaiting &&
+             SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
+    all_.waker.Wake(task, shm::WakeReason::kSignal, moment);
+    task.reply[0] = 1;
+  } else if (task.state == TaskState::kUnseen) {
+    all_.unseen_threads.ComeBack(task, moment);
+    task.parked = true;
+    all_.host_cpu.Check(task, CpuClockOf(task));
+    const shm::Notification note = SlotOf(task).note;
+    Reactor::Found found = kConcernsAll;
+    found.looks_again = all_.notifications.Handle(task, note);
+    return found;
+  } else if (!task.parked || task.trap_id != 0) {
+    // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
+    // outside has ended its trapped call.
+    if (task.state == TaskState::kWaiting) all_.waker.Wake(task, shm::WakeReason::kSignal, moment);
+    all_.gate_keeper.ChargeUndispatched(task);
+    task.trap_id = 0;
+    task.notified_early = true;
+  } else if (SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
+    // The kernel let it run a handler before its turn, which is to answer what it said before.
+    SlotOf(task).note.kind = shm::NotificationKind::kResumed;
+  }
+  return kConcernsAll;
+}
+
+bool NotificationReceiver::PutOff(Task& task) {
+  return all_.gate_keeper.PutOff(&task, [this, &task, tid = task.tid](Moment at) {
+    // It may have ended meanwhile.
+    if (run_.table.Living(tid) != &task) return Reactor::Found{};
+    task.is_put_off = false;
+    return Arrived(task, at);
+  });
+}
+
+Reactor::Found NotificationReceiver::Take(const Process& process, Moment moment) {
+  constexpr std::size_t kAtOnce = 64;
+  if (process.link == nullptr) return {};
+  shm::PipeMessage messages[kAtOnce];
+  const ssize_t bytes = read(process.link->incoming_fd(), messages, sizeof messages);
+  const std::size_t count = bytes > 0 ? static_cast<std::size_t>(bytes) / sizeof messages[0] : 0;
+  Reactor::Found found;
+  for (std::size_t i = 0; i < count; ++i) {
+    Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
+    if (task == nullptr || task->state == TaskState::kDead) continue;
+    if (all_.gate_keeper.IsSaidBeforeTurn(*task, messages[i])) continue;
+    // One that says so again and again is heard once.
+    if (!task->is_put_off && run_.gates_only) task->is_put_off = PutOff(*task);
+    if (!task->is_put_off) found |= Arrived(*task, moment);
+  }
+  return found;
+}
+
+}  // namespace tcs

@@ -1,0 +1,33 @@
+// System calls of clients that the kernel hands over: whose they are, and whether they are
+// anybody's business.
+#pragma once
+
+#include <vector>
+
+#include "coordinator/engine/engine_part.h"
+#include "coordinator/os/trap.h"
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+class TrapReceiver : public EnginePart {
+ public:
+  using EnginePart::EnginePart;
+
+  // A trapped call has arrived. That of the running thread stops it like a notification.
+  Reactor::Found Arrived(int listener, Moment moment);
+  // The makers of threads have gone on, so that it is known whose the calls are.
+  void TakeCallsOfNewborns(Moment moment);
+  // A signal was to end the thread's wait, but the kernel has none for the thread: its call is
+  // taken as one that it makes again.
+  void TakeAgainIfUnmarked(Task& task);
+
+ private:
+  Reactor::Found Take(const TrappedCall& call, Moment moment);
+  Task* TaskOf(const TrappedCall& call);
+
+  std::vector<TrappedCall> unborn_calls_;  // of threads that are to be known soon
+};
+
+}  // namespace tcs

@@ -1,0 +1,23 @@
+// Threads that the kernel has in its hands, and what runs without a place in the run.
+#pragma once
+
+#include "coordinator/engine/engine_part.h"
+#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+class UnseenThreads : public EnginePart {
+ public:
+  using EnginePart::EnginePart;
+
+  // Those that the kernel holds no longer are ready again.
+  void Poll();
+  // The kernel no longer holds the thread, which was kUnseen.
+  void ComeBack(Task& task, Moment moment);
+  // Threads or processes that never registered are at work, or the kernel is at somebody's end:
+  // time waits for them.
+  bool UnmanagedRun();
+};
+
+}  // namespace tcs

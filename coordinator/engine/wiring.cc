@@ -1,0 +1,29 @@
+#include "coordinator/engine/wiring.h"
+
+#include "coordinator/host/fifo_executor.h"
+#include "coordinator/host/gate_executor.h"
+#include "coordinator/os/host.h"
+#include "coordinator/os/real_time_facts.h"
+#include "coordinator/scenario/patience.h"
+
+namespace tcs {
+
+namespace {
+
+std::unique_ptr<Executor> MakeExecutor(bool gates_only) {
+  if (gates_only) return std::make_unique<GateExecutor>();
+  return std::make_unique<FifoExecutor>();
+}
+
+}  // namespace
+
+Wiring::Wiring(const Scenario& scenario, const RunOptions& options)
+    : real_time(AskForRealTime()),
+      run(scenario, options, real_time.error != 0, WhyNoDuplicates() != 0),
+      activations(run.IsCallback()),
+      executor(MakeExecutor(run.gates_only)),
+      host_cpu(*executor, PatienceOf(scenario).ideal) {}
+
+Wiring::~Wiring() = default;
+
+}  // namespace tcs

@@ -1,0 +1,262 @@
+// The parts of a run, and how they know of each other. No logic: what happens is the parts' own
+// business. They are made in this order, and go in the reverse one.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "coordinator/calls/child_stops.h"
+#include "coordinator/calls/datagram_log.h"
+#include "coordinator/calls/datagram_queues.h"
+#include "coordinator/calls/dds_gateway.h"
+#include "coordinator/calls/descriptor_waits.h"
+#include "coordinator/calls/follow_ups.h"
+#include "coordinator/calls/futex_calls.h"
+#include "coordinator/calls/futex_words.h"
+#include "coordinator/calls/guarded_calls.h"
+#include "coordinator/calls/kept_calls.h"
+#include "coordinator/calls/kernel_object_waits.h"
+#include "coordinator/calls/local_sockets.h"
+#include "coordinator/calls/lock_futexes.h"
+#include "coordinator/calls/notifications.h"
+#include "coordinator/calls/outside_waits.h"
+#include "coordinator/calls/posted_datagrams.h"
+#include "coordinator/calls/priority_inheritance.h"
+#include "coordinator/calls/raw_calls.h"
+#include "coordinator/calls/raw_child_waits.h"
+#include "coordinator/calls/raw_draws.h"
+#include "coordinator/calls/raw_polls.h"
+#include "coordinator/calls/raw_scheduling.h"
+#include "coordinator/calls/raw_timers.h"
+#include "coordinator/calls/raw_times.h"
+#include "coordinator/calls/raw_transfers.h"
+#include "coordinator/calls/scheduling_calls.h"
+#include "coordinator/calls/shared_events.h"
+#include "coordinator/calls/signal_calls.h"
+#include "coordinator/calls/signal_wakes.h"
+#include "coordinator/calls/spawns.h"
+#include "coordinator/calls/timer_calls.h"
+#include "coordinator/calls/timer_signals.h"
+#include "coordinator/calls/trapped_calls.h"
+#include "coordinator/calls/trapped_waits.h"
+#include "coordinator/dump/state_link.h"
+#include "coordinator/engine/block_detection.h"
+#include "coordinator/engine/clock_pages.h"
+#include "coordinator/engine/computing_ahead.h"
+#include "coordinator/engine/debugger_hold.h"
+#include "coordinator/engine/dispatcher.h"
+#include "coordinator/engine/early_turns.h"
+#include "coordinator/engine/end_requests.h"
+#include "coordinator/engine/event_pump.h"
+#include "coordinator/engine/gate_keeper.h"
+#include "coordinator/engine/home_processor.h"
+#include "coordinator/engine/horizons.h"
+#include "coordinator/engine/idle_time.h"
+#include "coordinator/engine/kernel_events.h"
+#include "coordinator/engine/lookout.h"
+#include "coordinator/engine/loop.h"
+#include "coordinator/engine/network_leaf.h"
+#include "coordinator/engine/notification_receiver.h"
+#include "coordinator/engine/outside_leaf.h"
+#include "coordinator/engine/pace_keeper.h"
+#include "coordinator/engine/pacing.h"
+#include "coordinator/engine/run_end.h"
+#include "coordinator/engine/run_reporter.h"
+#include "coordinator/engine/settler.h"
+#include "coordinator/engine/setup.h"
+#include "coordinator/engine/spinners.h"
+#include "coordinator/engine/standstill_watch.h"
+#include "coordinator/engine/state_dump.h"
+#include "coordinator/engine/trap_receiver.h"
+#include "coordinator/engine/turns_beside.h"
+#include "coordinator/engine/unseen_threads.h"
+#include "coordinator/engine/world_leaf.h"
+#include "coordinator/host/executor.h"
+#include "coordinator/host/host_cpu.h"
+#include "coordinator/network/robot_network.h"
+#include "coordinator/os/real_time_right.h"
+#include "coordinator/os/unique_fd.h"
+#include "coordinator/processes/bare_programs.h"
+#include "coordinator/processes/births.h"
+#include "coordinator/processes/deaths.h"
+#include "coordinator/processes/expulsion.h"
+#include "coordinator/processes/grace.h"
+#include "coordinator/processes/held_threads.h"
+#include "coordinator/processes/launches.h"
+#include "coordinator/processes/registration.h"
+#include "coordinator/processes/registration_sockets.h"
+#include "coordinator/processes/ros_daemon.h"
+#include "coordinator/processes/run_records.h"
+#include "coordinator/processes/slot_check.h"
+#include "coordinator/processes/trap_listeners.h"
+#include "coordinator/processes/undispatched_threads.h"
+#include "coordinator/processes/unknown_children.h"
+#include "coordinator/processes/unmanaged_threads.h"
+#include "coordinator/processes/usage_book.h"
+#include "coordinator/tasks/activations.h"
+#include "coordinator/tasks/coordinator.h"
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/run_clock.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+#include "coordinator/world/world.h"
+#include "shm/layout.h"
+
+namespace tcs {
+
+struct Wiring {
+  Wiring(const Scenario& scenario, const RunOptions& options);
+  ~Wiring();
+  Wiring(const Wiring&) = delete;
+  Wiring& operator=(const Wiring&) = delete;
+
+  const RealTimeFacts real_time;
+  RunState run;
+  World world{[this](const std::string& text) { run.Warn(text); }};
+  RobotNetwork network;
+  AnswerFeed answers;
+  Activations activations;
+  RunRecords records{run, world, activations};
+  Waker waker{run, activations};
+  Reactor reactor;
+  std::unique_ptr<Executor> executor;
+  HostCpu host_cpu;
+  HeldThreads held{run, host_cpu};
+  UndispatchedThreads undispatched{run};
+  RunClock clock;
+  Pacing pacing{run.options, run.end, run.options.on_notice};
+  ComputingAhead ahead{{run, waker, host_cpu, *executor, clock, records}, [this](Moment moment) {
+                         return event_pump.Poll(EventPump::kNoWait, moment);
+                       }};
+  TurnsBeside beside{{run, *executor, clock, ahead, records},
+                     [this](Moment moment) { return event_pump.Poll(EventPump::kNoWait, moment); }};
+  // What programs ask for, and what they wait for.
+  PriorityInheritance inheritance{run, waker};
+  DdsGateway dds{run, waker, world, inheritance};
+  SchedulingCalls scheduling{run, waker, inheritance};
+  RawScheduling raw_scheduling{run, scheduling};
+  FutexWords words{run, waker};
+  LockFutexes locks{run, waker, words, inheritance};
+  FutexCalls futexes{run, waker, words, locks,
+                     [this](Process* process) { ahead.StayHome(process); }};
+  SignalWakes signal_wakes{run, waker, host_cpu.active(), undispatched};
+  ChildStops stops{run, waker, signal_wakes, host_cpu.active()};
+  SignalCalls signals{
+      run, waker, signal_wakes, stops, clock, [this](const Process& process, VirtualTime at) {
+        dds.NoteWhetherStopped(process, at);
+      }};
+  TimerSignals timer_signals{run, waker, signal_wakes};
+  TimerCalls timers{run, waker, timer_signals};
+  RawTimers raw_timers{run, timers};
+  Peers peers{run};
+  OutsideWaits outside{run, reactor, peers, [this] { return pacing.RunningTime(); }};
+  DescriptorWaits descriptors{reactor, outside};
+  SharedEvents shared_events{run, waker, reactor};
+  LocalSockets local_sockets{run};
+  DatagramLog datagram_log;
+  DatagramQueues datagrams{run, answers, datagram_log};
+  PostedDatagrams posted{run, world};
+  KernelObjectWaits objects{run, waker, [this](Moment moment) {
+                              if (world_leaf.GoesOn()) world.ReceiveFromTerminals(moment.at);
+                            }};
+  BarePrograms bare_programs{run};
+  RosDaemon ros_daemon{run, peers};
+  GuardedCalls guard;
+
+  // Who takes part: how threads and processes come, and how they go.
+  SlotCheck slot_check{run.IsFixed(), [this] { return clock.NsAt(host_cpu.stop_tsc()); }};
+  UsageBook usage{run.table, slot_check};
+  Expulsion expulsion{run, waker, host_cpu};
+  Births births{run, waker, reactor, records};
+  Deaths deaths{run, waker, reactor, host_cpu, usage};
+  TrapListeners traps{reactor};
+  RegistrationSockets sockets{reactor};
+  SpinWaits spins{run};
+  DateCalls dates{run, waker};
+  Registration registration{{run, waker, reactor, host_cpu, sockets, bare_programs, births, deaths},
+                            {[this](Process& process, Moment moment) {
+                               TimerCalls::DeletePosix(process);
+                               dds.Leave(process, moment);
+                             },
+                             [this](const Process& process) { return dds.AreaOf(process); }}};
+  Launches launches{run, waker, births, sockets, traps, world, network, guard.guarded()};
+  UnmanagedThreads unmanaged{run};
+  UnknownChildren unknown_children{run.table, reactor, unmanaged};
+  Grace grace{run, reactor, unknown_children, [this](Moment moment) { signals.Sent({}, moment); }};
+
+  Spawns spawns{
+      run,
+      {*executor, births, registration, scheduling, bare_programs, unknown_children, unmanaged}};
+
+  // Calls that are made raw.
+  RawTimes raw_times{run, waker, dates};
+  RawUsage raw_usage{run};
+  ComputerFiles computer_files{run};
+  RawLimits raw_limits{run};
+  RawPolls raw_polls{waker, descriptors};
+  RawDraws raw_draws{run};
+  RawTransfers raw_transfers{run,        waker,         activations, descriptors,
+                             raw_timers, local_sockets, raw_draws,   outside};
+  RawChildWaits raw_child_waits{run, waker, unknown_children};
+  RawIpc raw_ipc{run, waker, activations, objects, descriptors};
+  RawCalls raw_calls{run,
+                     waker,
+                     {raw_times, raw_usage, raw_timers, raw_polls, raw_transfers, raw_child_waits,
+                      raw_scheduling, raw_ipc, words, local_sockets, computer_files, raw_limits},
+                     [this](Task& task) { return notifications.Yield(task); },
+                     [this](Task& task, const TrappedCall& call) { trapped.Exit(task, call); }};
+  TrappedWaits trapped_waits{words, raw_child_waits, activations};
+  TrappedCalls trapped{run,    waker,     futexes,       raw_calls, guard,
+                       deaths, *executor, local_sockets, spawns};
+  KeptCalls kept_calls{waker, descriptors};
+  FollowUps follow_ups{run, objects, shared_events, signals, signal_wakes, spawns};
+
+  // What they notify.
+  Notifications notifications{run,
+                              waker,
+                              {expulsion, descriptors, unknown_children, timers, spawns, scheduling,
+                               signals, objects, dds, local_sockets, outside, spins, dates}};
+
+  // What users are told.
+  DebuggerHold debugger{run};
+  StandstillWatch standstill{run, unmanaged, unknown_children};
+  RunReporter reporter{run,
+                       {clock, world, usage, launches, dds.records(), pacing, activations, answers,
+                        datagrams, words.table()}};
+  StateLink state_link;
+  StateDump state_dump{{run, clock, host_cpu, world, network, launches, ahead, words.table(),
+                        objects.queues(), dds.hub(), unknown_children, pacing, state_link}};
+
+  // The run's memory, which all clients can read and of which run.header is the beginning; null
+  // before the set-up. And its descriptor.
+  shm::RunMemory* memory = nullptr;
+  UniqueFd memfd;
+
+  // The engine's own parts, which reach all others: what each does is said where it is declared.
+  HomeProcessor home_processor;
+  EndRequests end_requests;
+  GateKeeper gate_keeper{*this};
+  EventPump event_pump{*this};
+  KernelEvents kernel_events{*this};
+  NotificationReceiver notification_receiver{*this};
+  TrapReceiver trap_receiver{*this};
+  BlockDetection block_detection{*this};
+  Horizons horizons{*this};
+  ClockPages clock_pages{*this};
+  Settler settler{*this};
+  Dispatcher dispatcher{*this};
+  EarlyTurns early_turns{*this};
+  Spinners spinners{*this};
+  UnseenThreads unseen_threads{*this};
+  WorldLeaf world_leaf{*this};
+  NetworkLeaf network_leaf{*this};
+  OutsideLeaf outside_leaf{*this};
+  IdleTime idle_time{*this};
+  Lookout lookout{*this};
+  PaceKeeper pace_keeper{*this};
+  Loop loop{*this};
+  Setup setup{*this};
+  RunEnd run_end{*this};
+};
+
+}  // namespace tcs
