@@ -127,8 +127,8 @@ void GateKeeper::BringToGate(Task& task) {
   const HostDuration sent = HostNs(HostClockOf(task));
   run_.turn.is_sent_to_gate = task.has_signal = true;
   HostCpu::SendToGate(task.process->pid, task);
-  const HostDuration until = HostNs(CLOCK_MONOTONIC) + kMostStarved;
-  while (HostNs(CLOCK_MONOTONIC) < until) {
+  const HostDuration until = HostNs(HostClockNs(CLOCK_MONOTONIC)) + kMostStarved;
+  while (HostNs(HostClockNs(CLOCK_MONOTONIC)) < until) {
     all_.event_pump.Poll(kGateLook, {});
     if (run_.turn.HasSpoken() || !Waker::IsRunnable(task) || task.process->dead) return;
     if (HostNs(HostClockOf(task)) > sent + kMostWayToGate || ThreadState(task.tid) != 'R') return;
@@ -183,8 +183,8 @@ Reactor::Found GateKeeper::AwaitThreads(Moment moment, const WayToGate& way,
   Reactor::Found found;
   std::map<const Task*, HostDuration> first_seen;
   bool awaits = true;
-  const HostDuration until = HostNs(CLOCK_MONOTONIC) + kMostStarved;
-  while (awaits && HostNs(CLOCK_MONOTONIC) < until) {
+  const HostDuration until = HostNs(HostClockNs(CLOCK_MONOTONIC)) + kMostStarved;
+  while (awaits && HostNs(HostClockNs(CLOCK_MONOTONIC)) < until) {
     awaits = false;
     for (Task& task : run_.table.tasks()) {
       if (!is_awaited(task)) continue;
