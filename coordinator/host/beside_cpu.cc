@@ -192,7 +192,13 @@ void BesideCpu::Take(HostThread& thread) {
 }
 
 bool BesideCpu::GiveUp(HostThread& thread) {
-  if (TakeBack(thread)) thread.parked = true;
+  if (TakeBack(thread)) {
+    thread.parked = true;
+  } else {
+    // It may have been kept from the processor with the gate half open: a thread that sleeps on at
+    // an open gate would be taken for one that the kernel holds.
+    AwaitOpener();
+  }
   Saying runs = Saying::kRuns;
   if (!thread.slot_memory->saying.compare_exchange_strong(runs, Saying::kByPipe)) return false;
   thread.turns_beside = false;
