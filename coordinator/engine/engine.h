@@ -8,7 +8,8 @@ namespace tcs {
 
 class Engine {
  public:
-  Engine(const Scenario& scenario, const RunOptions& options) : all_(scenario, options) {}
+  Engine(const Scenario& scenario, const RunOptions& options)
+      : all_(scenario, options, AskHost()) {}
   RunReport Run();
 
  private:

@@ -17,9 +17,13 @@ std::unique_ptr<Executor> MakeExecutor(bool gates_only) {
 
 }  // namespace
 
-Wiring::Wiring(const Scenario& scenario, const RunOptions& options)
-    : real_time(AskForRealTime()),
-      run(scenario, options, real_time.error != 0, WhyNoDuplicates() != 0),
+HostPermits AskHost() {
+  return {.real_time = AskForRealTime(), .duplicates = WhyNoDuplicates() == 0};
+}
+
+Wiring::Wiring(const Scenario& scenario, const RunOptions& options, const HostPermits& permits)
+    : real_time(permits.real_time),
+      run(scenario, options, real_time.error != 0, !permits.duplicates),
       activations(run.IsCallback()),
       executor(MakeExecutor(run.gates_only)),
       host_cpu(*executor, PatienceOf(scenario).ideal) {}

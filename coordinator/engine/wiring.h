@@ -104,8 +104,15 @@
 
 namespace tcs {
 
+// What the host permits, which decides how a run keeps its threads apart.
+struct HostPermits {
+  RealTimeFacts real_time;
+  bool duplicates = true;  // pidfd_getfd
+};
+HostPermits AskHost();
+
 struct Wiring {
-  Wiring(const Scenario& scenario, const RunOptions& options);
+  Wiring(const Scenario& scenario, const RunOptions& options, const HostPermits& permits);
   ~Wiring();
   Wiring(const Wiring&) = delete;
   Wiring& operator=(const Wiring&) = delete;

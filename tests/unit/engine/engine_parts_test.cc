@@ -1,10 +1,13 @@
 // The engine's parts without a program: what they do with threads that are numbers.
+#include <errno.h>
 #include <gtest/gtest.h>
 #include <pthread.h>
 #include <signal.h>
+#include <sys/epoll.h>
 #include <unistd.h>
 
 #include <memory>
+#include <vector>
 
 #include "coordinator/engine/wiring.h"
 #include "tests/unit/times.h"
@@ -23,9 +26,16 @@ Scenario OfTwoRobots() {
   return scenario;
 }
 
+HostPermits WithLevels(bool permitted) {
+  HostPermits permits;
+  permits.real_time.error = permitted ? 0 : EPERM;
+  return permits;
+}
+
 class EngineParts : public testing::Test {
  protected:
-  EngineParts() {
+  explicit EngineParts(bool has_levels = true)
+      : all_{OfTwoRobots(), RunOptions{}, WithLevels(has_levels)} {
     all_.run.header = header_.get();
     all_.setup.Connect();
     all_.setup.MakeRobots();
@@ -50,8 +60,24 @@ class EngineParts : public testing::Test {
   }
 
   std::unique_ptr<shm::RunHeader> header_ = std::make_unique<shm::RunHeader>();
-  Wiring all_{OfTwoRobots(), RunOptions{}};
+  Wiring all_;
   RunState& run_ = all_.run;
+};
+
+// Where there are no levels, of a thread that has registered: it has a gate.
+class EnginePartsAtGates : public EngineParts {
+ protected:
+  EnginePartsAtGates() : EngineParts(false) {
+    task_ = &AddThread(run_.robots[0]);
+    task_->process->link = ProcessLink::Make();
+    task_->slot = task_->process->link->TakeSlot(*task_);
+    task_->slot_memory = &task_->process->link->SlotAt(task_->slot);
+    task_->parked = false;
+    run_.turn.Begin(*task_, At(kMs));
+  }
+  void Says(shm::NotificationKind kind) { SlotOf(*task_).note.kind = kind; }
+
+  Task* task_ = nullptr;
 };
 
 // Each virtual CPU, and what comes from outside; there is no network.
@@ -137,6 +163,100 @@ TEST_F(EngineParts, AStopSignalIsKeptUntilItIsTaken) {
   EXPECT_EQ(run_.stop.signal(), SIGTERM);
   EXPECT_FALSE(all_.end_requests.IsPending());
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+TEST_F(EngineParts, NobodyIsWaitedForWhereNothingIsToCome) {
+  EXPECT_EQ(all_.idle_time.Living(), 0);
+  EXPECT_TRUE(all_.idle_time.HasJumpedOver());
+  EXPECT_FALSE(all_.network_leaf.Step());
+  EXPECT_FALSE(all_.outside_leaf.Step());
+  EXPECT_FALSE(all_.world_leaf.Step());
+  EXPECT_TRUE(all_.pace_keeper.Keep());
+}
+
+TEST_F(EngineParts, ALookFindsNothingWhereTheKernelHasNothingToSay) {
+  const Reactor::Found found = all_.event_pump.Poll(EventPump::kNoWait, {At(kMs)});
+  EXPECT_FALSE(found.stops_running || found.wakes_others || found.blocks_running);
+}
+
+TEST_F(EngineParts, WithLevelsNothingIsPutOff) {
+  Task& task = AddThread(run_.robots[0]);
+  Task& other = AddThread(run_.robots[1]);
+  run_.turn.Begin(task, At(kMs));
+  EXPECT_FALSE(all_.gate_keeper.PutOff(&other, [](Moment) { return Reactor::Found{}; }));
+}
+
+// It goes on with the call that it begins.
+TEST_F(EnginePartsAtGates, ACallThatConcernsNobodyIsMadeInTheSameTurn) {
+  Says(shm::NotificationKind::kCall);
+  EXPECT_TRUE(all_.gate_keeper.MayGoOn(*task_));
+  EXPECT_TRUE(all_.gate_keeper.says_call());
+  EXPECT_FALSE(all_.gate_keeper.EndCall({}).stops_running);
+  EXPECT_FALSE(all_.gate_keeper.says_call());
+  EXPECT_TRUE(all_.gate_keeper.TakesOpening());
+  EXPECT_FALSE(all_.gate_keeper.TakesOpening());
+  EXPECT_FALSE(task_->parked);
+}
+
+TEST_F(EnginePartsAtGates, ACallBeforeWhichSomebodyHasToRunWaitsAtItsGate) {
+  Says(shm::NotificationKind::kCall);
+  EXPECT_TRUE(all_.gate_keeper.MayGoOn(*task_));
+  EXPECT_TRUE(all_.gate_keeper.EndCall(kConcernsAll).stops_running);
+  EXPECT_FALSE(all_.gate_keeper.TakesOpening());
+  EXPECT_TRUE(task_->parked);
+}
+
+TEST_F(EnginePartsAtGates, WhatIsNoCallEndsTheTurn) {
+  Says(shm::NotificationKind::kWaitFds);
+  EXPECT_FALSE(all_.gate_keeper.MayGoOn(*task_));
+  EXPECT_FALSE(all_.gate_keeper.says_call());
+}
+
+TEST_F(EnginePartsAtGates, OneThatWasSentToItsGateDoesNotGoOn) {
+  Says(shm::NotificationKind::kCall);
+  run_.turn.is_sent_to_gate = true;
+  EXPECT_FALSE(all_.gate_keeper.MayGoOn(*task_));
+}
+
+// What others do meanwhile happens once the running thread begins its next call, in their order.
+TEST_F(EnginePartsAtGates, WhatOthersDoIsPutOffToTheEndOfTheCall) {
+  Task& other = AddThread(run_.robots[1]);
+  std::vector<int> done;
+  for (const int which : {1, 2}) {
+    EXPECT_TRUE(all_.gate_keeper.PutOff(&other, [&done, which](Moment) {
+      done.push_back(which);
+      return Reactor::Found{};
+    }));
+  }
+  EXPECT_FALSE(all_.gate_keeper.PutOff(task_, [](Moment) { return Reactor::Found{}; }));
+  EXPECT_TRUE(done.empty());
+  Says(shm::NotificationKind::kCall);
+  EXPECT_TRUE(all_.gate_keeper.MayGoOn(*task_));
+  all_.gate_keeper.EndCall({});
+  EXPECT_EQ(done, (std::vector<int>{1, 2}));
+}
+
+// A handler may begin to say that it ends a wait whose turn has begun meanwhile.
+TEST_F(EnginePartsAtGates, WhatEndsAWaitIsOldOnceTheGateHasOpened) {
+  const auto slot = static_cast<std::uint32_t>(task_->slot);
+  EXPECT_FALSE(all_.gate_keeper.IsSaidBeforeTurn(*task_, {slot, 1}));
+  all_.gate_keeper.OpenGate(*task_);
+  EXPECT_TRUE(all_.gate_keeper.IsSaidBeforeTurn(*task_, {slot, 1}));
+  EXPECT_FALSE(all_.gate_keeper.IsSaidBeforeTurn(*task_, {slot, 0}));
+  EXPECT_FALSE(all_.gate_keeper.IsSaidBeforeTurn(*task_, {slot, 1}));
+}
+
+TEST_F(EnginePartsAtGates, ANotificationInThePipeEndsTheTurnOfItsThread) {
+  all_.kernel_events.Register();
+  all_.reactor.Add(task_->process->link->incoming_fd(), EPOLLIN,
+                   {Tag::kPipe, task_->process->index});
+  Says(shm::NotificationKind::kWaitFds);
+  const shm::PipeMessage message{static_cast<std::uint32_t>(task_->slot), 0};
+  ASSERT_EQ(write(task_->process->link->notify_fd(), &message, sizeof message),
+            static_cast<ssize_t>(sizeof message));
+  const Reactor::Found found = all_.event_pump.LookOnce(EventPump::kNoWait, {At(kMs)}, true);
+  EXPECT_TRUE(found.stops_running);
+  EXPECT_TRUE(run_.turn.notified);
 }
 
 }  // namespace
