@@ -22,6 +22,7 @@
 #include "coordinator/dump/state_page.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/own_number.h"
 
 namespace tcs {
 
@@ -76,24 +77,13 @@ std::optional<uid_t> UserOf(pid_t pid) {
   return std::nullopt;
 }
 
-// As the process knows itself, in a container of its own.
-std::optional<pid_t> OwnNumberOf(pid_t pid) {
-  std::ifstream status(ProcOf(pid) + "/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.rfind("NSpid:", 0) == 0) {
-      return static_cast<pid_t>(std::atol(line.c_str() + line.find_last_of("\t ") + 1));
-    }
-  }
-  return std::nullopt;
-}
-
 // Others have the memory, too: the block detector, and whoever asks just now.
 bool IsCoordinatorOf(pid_t pid, const UniqueFd& memory) {
   pid_t coordinator = 0;
   static_assert(sizeof StatePage::coordinator_pid == sizeof coordinator);
   return pread(memory.get(), &coordinator, sizeof coordinator,
                static_cast<off_t>(offsetof(StatePage, coordinator_pid))) == sizeof coordinator &&
-         OwnNumberOf(pid) == coordinator;
+         OwnNumberOf(pid).number == coordinator;
 }
 
 std::string NameOfUser(uid_t uid) {

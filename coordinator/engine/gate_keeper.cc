@@ -1,7 +1,5 @@
 #include "coordinator/engine/gate_keeper.h"
 
-#include <time.h>
-
 #include <map>
 #include <optional>
 #include <utility>
@@ -9,6 +7,7 @@
 #include "coordinator/engine/wiring.h"
 #include "coordinator/os/host.h"
 #include "coordinator/tasks/cpu_clock.h"
+#include "coordinator/tasks/run_clock.h"
 
 namespace tcs {
 
@@ -24,9 +23,9 @@ constexpr HostDuration kMostWayFromWait = HostDuration::Milliseconds(1);
 // The real time for that: on a busy host others may go first for many slices.
 constexpr HostDuration kMostStarved = HostDuration::Seconds(5);
 constexpr HostDuration kGateLook = HostDuration::Microseconds(500);
-constexpr HostDuration kShortGateLook =
-    HostDuration::Microseconds(50);  // at one that is there soon
-constexpr int kMostAtOnce = 1000;    // events of one instant
+// At one that is there soon.
+constexpr HostDuration kShortGateLook = HostDuration::Microseconds(50);
+constexpr int kMostAtOnce = 1000;  // events of one instant
 
 // The thread, which is about to go on, sends a signal at once: its shim says so, or the kernel
 // carries out the call.
@@ -127,8 +126,8 @@ void GateKeeper::BringToGate(Task& task) {
   const HostDuration sent = HostNs(HostClockOf(task));
   run_.turn.is_sent_to_gate = task.has_signal = true;
   HostCpu::SendToGate(task.process->pid, task);
-  const HostDuration until = HostNs(HostClockNs(CLOCK_MONOTONIC)) + kMostStarved;
-  while (HostNs(HostClockNs(CLOCK_MONOTONIC)) < until) {
+  const HostTime until = RunClock::Now() + kMostStarved;
+  while (RunClock::Now() < until) {
     all_.event_pump.Poll(kGateLook, {});
     if (run_.turn.HasSpoken() || !Waker::IsRunnable(task) || task.process->dead) return;
     if (HostNs(HostClockOf(task)) > sent + kMostWayToGate || ThreadState(task.tid) != 'R') return;
@@ -183,8 +182,8 @@ Reactor::Found GateKeeper::AwaitThreads(Moment moment, const WayToGate& way,
   Reactor::Found found;
   std::map<const Task*, HostDuration> first_seen;
   bool awaits = true;
-  const HostDuration until = HostNs(HostClockNs(CLOCK_MONOTONIC)) + kMostStarved;
-  while (awaits && HostNs(HostClockNs(CLOCK_MONOTONIC)) < until) {
+  const HostTime until = RunClock::Now() + kMostStarved;
+  while (awaits && RunClock::Now() < until) {
     awaits = false;
     for (Task& task : run_.table.tasks()) {
       if (!is_awaited(task)) continue;

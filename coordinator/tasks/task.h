@@ -273,8 +273,8 @@ struct Robot {
   bool is_ours = false;        // tcsim's own: no run goes on for its programs
   bool is_reached = false;     // nothing is local to it any more (calls/local_sockets.h)
   std::uint64_t acts = 0;      // turns of its threads that did more than spin
-  bool is_disturbed =
-      false;  // others than its own programs send it signals (engine/turns_beside.h)
+  // Others than its own programs send it signals (engine/turns_beside.h).
+  bool is_disturbed = false;
   RobotScheduler scheduler;
   VirtualTime next_launch = VirtualTime::Never();  // when the next client of its starts
   std::vector<VirtualCpu*> cpus;                   // by core
