@@ -32,24 +32,37 @@ def rules() -> dict[str, list[str]]:
     return found
 
 
-def folders_included() -> dict[str, dict[str, str]]:
-    """For each folder, the others that it includes, with one line that does. The shim is one, and so is the bridge."""
-    def folder_of(path: str) -> str:
-        top = path.split("/")[0]
-        return top if top in ("libtcs_preload", "simbody_bridge") else path
+Sources = dict[str, list[tuple[int, str]]]
 
+
+def sources() -> Sources:
+    """For each source its lines that include something of the project: their numbers, and what."""
     found = {}
     for top in TOPS:
         for path in sorted((ROOT / top).rglob("*")):
             if path.suffix not in SOURCES:
                 continue
-            of = folder_of(str(path.parent.relative_to(ROOT)))
+            included = found.setdefault(str(path.relative_to(ROOT)), [])
             for number, line in enumerate(path.read_text().splitlines(), 1):
-                include = re.match(r'\s*#\s*include "([^"]+/)[^"/]+"', line)
-                into = folder_of(include[1].rstrip("/")) if include else of
-                if into != of and into.split("/")[0] in TOPS:
-                    where = f"{path.relative_to(ROOT)}:{number}"
-                    found.setdefault(of, {}).setdefault(into, where)
+                include = re.match(r'\s*#\s*include "([^"]+)"', line)
+                if include is not None and include[1].split("/")[0] in TOPS:
+                    included.append((number, include[1]))
+    return found
+
+
+def folders_included(of_sources: Sources) -> dict[str, dict[str, str]]:
+    """For each folder, the others that it includes, with one line that does. The shim is one, and so is the bridge."""
+    def folder_of(path: str) -> str:
+        top = path.split("/")[0]
+        return top if top in ("libtcs_preload", "simbody_bridge") else path.rpartition("/")[0]
+
+    found = {}
+    for name, lines in of_sources.items():
+        of = folder_of(name)
+        for number, what in lines:
+            into = folder_of(what)
+            if into != of:
+                found.setdefault(of, {}).setdefault(into, f"{name}:{number}")
     return found
 
 
@@ -73,8 +86,8 @@ def circle(included: dict[str, dict[str, str]]) -> list[str]:
     return next((found for folder in included if (found := walk(folder))), [])
 
 
-def circles() -> list[str]:
-    included = folders_included()
+def circles(of_sources: Sources) -> list[str]:
+    included = folders_included(of_sources)
     found = circle(included)
     if not found:
         return []
@@ -83,30 +96,24 @@ def circles() -> list[str]:
     return ["folders include each other in a circle: " + ", ".join(steps)]
 
 
-def mistakes() -> list[str]:
+def mistakes(of_sources: Sources) -> list[str]:
     allowed = rules()
     if not allowed:
         return [f"{PAGE}: no table of folders was found"]
     found = [f"{PAGE}: there is no folder {folder}" for folder in allowed if not (ROOT / folder).is_dir()]
-    for top in TOPS:
-        for path in sorted((ROOT / top).rglob("*")):
-            if path.suffix not in SOURCES:
-                continue
-            name = str(path.relative_to(ROOT))
-            of = max((f for f in allowed if name.startswith(f)), key=len, default=None)
-            if of is None:
-                found.append(f"{name}: its folder has no row in {PAGE}")
-                continue
-            for number, line in enumerate(path.read_text().splitlines(), 1):
-                include = re.match(r'\s*#\s*include "([^"]+)"', line)
-                if include is None or include[1].split("/")[0] not in TOPS:
-                    continue
-                if not include[1].startswith((of, *allowed[of])):
-                    found.append(f"{name}:{number}: {of} may not include {include[1]}")
+    for name, lines in of_sources.items():
+        of = max((f for f in allowed if name.startswith(f)), key=len, default=None)
+        if of is None:
+            found.append(f"{name}: its folder has no row in {PAGE}")
+            continue
+        for number, what in lines:
+            if not what.startswith((of, *allowed[of])):
+                found.append(f"{name}:{number}: {of} may not include {what}")
     return found
 
 
 if __name__ == "__main__":
-    found = mistakes() + circles()
+    read = sources()
+    found = mistakes(read) + circles(read)
     print("\n".join(found))
     sys.exit(1 if found else 0)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coordinator/engine/wiring.h"
+#include "tests/unit/ready_thread.h"
 #include "tests/unit/times.h"
 
 namespace tcs {
@@ -42,17 +43,7 @@ class EngineParts : public testing::Test {
   }
   Task& AddThread(Robot& robot) {
     const int number = 1'000'000'000 + static_cast<int>(all_.run.table.tasks().size());
-    Process& process = all_.run.table.AddProcess(number);
-    process.robot = &robot;
-    process.client = &process;
-    Task& task = all_.run.table.AddTask(number);
-    task.process = &process;
-    task.cpu = robot.cpus[0];
-    robot.tasks.push_back(&task);
-    robot.scheduler.Add(task.order, 0);
-    all_.waker.SetState(task, TaskState::kReady);
-    all_.waker.Refresh(robot);
-    return task;
+    return AddReadyThread(all_.run, all_.waker, robot, number);
   }
   VirtualTime HorizonOf(Task& task) {
     VirtualTime idle_until;

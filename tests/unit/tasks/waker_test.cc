@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "tests/unit/ready_thread.h"
 #include "tests/unit/times.h"
 
 namespace tcs {
@@ -45,17 +46,7 @@ class WakerTest : public testing::Test {
   }
   Task& AddThread(Robot& robot) {
     const int number = 1 + static_cast<int>(run_.table.tasks().size());
-    Process& process = run_.table.AddProcess(number);
-    process.robot = &robot;
-    process.client = &process;
-    Task& task = run_.table.AddTask(number);
-    task.process = &process;
-    task.cpu = robot.cpus[0];
-    robot.tasks.push_back(&task);
-    robot.scheduler.Add(task.order, 0);
-    waker_.SetState(task, TaskState::kReady);
-    waker_.Refresh(robot);
-    return task;
+    return AddReadyThread(run_, waker_, robot, number);
   }
   // The thread's virtual CPU has come to that, and the thread with it.
   void ComeTo(Task& task, VirtualTime time) {
