@@ -44,7 +44,7 @@ bool RunsBeside(const shm::ThreadSlot& slot) {
 
 // What the thread's clock has counted since then.
 std::int64_t NsSince(const shm::ClockPage& page, std::uint64_t tsc) {
-  return shm::MulQ32(static_cast<std::int64_t>(__rdtsc() - tsc), page.ns_per_tick_q32);
+  return shm::MulQ32(static_cast<std::int64_t>(shm::ReadTsc() - tsc), page.ns_per_tick_q32);
 }
 
 // The thread's own CPU clock, and how far that was from either end of the call that has asked.
@@ -54,7 +54,7 @@ struct OwnCpu {
 
 OwnCpu ReadOwnCpu(const shm::ClockPage& page) {
   timespec cpu;
-  const std::uint64_t begun_tsc = __rdtsc();
+  const std::uint64_t begun_tsc = shm::ReadTsc();
   RawSyscall(SYS_clock_gettime, CLOCK_THREAD_CPUTIME_ID, Arg(&cpu));
   const std::int64_t way_ns = NsSince(page, begun_tsc) / 2;
   return {shm::ToNs(cpu), shm::HostNsOf(page, way_ns < kMostCallNs ? way_ns : kMostCallNs)};
@@ -74,7 +74,7 @@ class NoHandlers {
   }
   // The thread has left its gate: that it has to do this, too, is not its own time.
   ~NoHandlers() {
-    const std::uint64_t begun_tsc = __rdtsc();
+    const std::uint64_t begun_tsc = shm::ReadTsc();
     if (Allow(0) && OnlyCpuClockTells(page_)) {
       shm::TakeOut(page_, shm::ReadClock(page_), NsSince(page_, begun_tsc), kMostCallNs);
     }

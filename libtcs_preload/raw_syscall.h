@@ -9,6 +9,10 @@
 
 namespace tcs::preload {
 
+#ifdef TCS_SIMULATED_HOST
+// The simulated host's door (tests/simulate/).
+long RawSyscall(long number, long a, long b, long c, long d, long e, long f);
+#else
 // With all six arguments. Calls of this form must not be among the calls that the trap lets through
 // by the mark.
 inline long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
@@ -25,6 +29,7 @@ inline long RawSyscall(long number, long a, long b, long c, long d, long e, long
       : "rcx", "r11", "memory", "cc");
   return result;
 }
+#endif
 
 // In the last argument, in the mark's place: the call is handed to the coordinator.
 inline constexpr long kTrapped = 0;

@@ -11,9 +11,8 @@
 // Everything here is async-signal-safe, takes no lock and makes no system call.
 #pragma once
 
-#include <x86gprintrin.h>
-
 #include "shm/layout.h"
+#include "shm/tsc.h"
 
 namespace tcs::shm {
 
@@ -65,7 +64,7 @@ inline ClockReading ReadClock(const ClockPage& page) {
   for (;;) {
     r.executed_word = page.executed_adjust.load(std::memory_order_acquire);
     r.waited_word = page.waited_adjust.load(std::memory_order_acquire);
-    r.tsc = __rdtsc();
+    r.tsc = ReadTsc();
     const std::int64_t executed =
         MulQ32(static_cast<std::int64_t>(r.tsc - page.base_tsc), page.ns_per_tick_q32) +
         AdjustValue(r.executed_word);

@@ -11,7 +11,7 @@
 // For the coordinator's thread only.
 #pragma once
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/task.h"
 #include "coordinator/tasks/wait.h"
 

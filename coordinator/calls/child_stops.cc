@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/signal_sets.h"
 
 namespace tcs {

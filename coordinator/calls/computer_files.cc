@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "coordinator/computer/computer_text.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/processes/usage_book.h"
 #include "shm/computer_files.h"
 #include "shm/time_values.h"

@@ -15,7 +15,7 @@
 
 #include "coordinator/computer/computer_file.h"
 #include "coordinator/computer/processor_folders.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {

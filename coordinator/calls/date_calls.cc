@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 #include "shm/time_values.h"
 
 namespace tcs {

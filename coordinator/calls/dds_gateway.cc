@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/scenario/own_topics.h"
 #include "coordinator/tasks/signal_sets.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "coordinator/calls/outside_waits.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/task.h"
 #include "coordinator/tasks/wait.h"

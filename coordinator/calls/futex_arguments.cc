@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <linux/futex.h>
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "shm/time_values.h"
 
 namespace tcs {

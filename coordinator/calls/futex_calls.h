@@ -10,7 +10,7 @@
 
 #include "coordinator/calls/futex_words.h"
 #include "coordinator/calls/lock_futexes.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
 

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
+#include "coordinator/port/waits.h"
 #include "shm/time_values.h"
 
 namespace tcs {
@@ -17,7 +19,7 @@ namespace {
 
 // How long a joiner gives the kernel to be through with a thread that has ended.
 constexpr int kEndTurns = 200;
-constexpr useconds_t kEndTurnUs = 50;
+constexpr HostDuration kEndTurn = HostDuration::Microseconds(50);
 
 constexpr std::uint64_t kMostWords = 128;      // FUTEX_WAITV_MAX
 constexpr std::uint32_t kWordOf32Bits = 0x02;  // FUTEX_32, the only size that there is
@@ -100,7 +102,7 @@ std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) 
       if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
       if (value != static_cast<std::uint32_t>(call.args[2])) return -EAGAIN;
       if (state == 'X' || state == 'Z' || turn == kEndTurns) break;
-      usleep(kEndTurnUs);
+      Pause(kEndTurn);
     }
   }
   table_.Wait(task.order, KeyFor(task, call, call.args[0]), command == FUTEX_WAIT ? kAnyBit : bits);

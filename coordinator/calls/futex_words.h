@@ -10,7 +10,7 @@
 
 #include <cstdint>
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/queues/futex_table.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"

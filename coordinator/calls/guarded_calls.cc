@@ -15,7 +15,8 @@
 #include <string>
 
 #include "coordinator/os/descendants.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
 
 namespace tcs {
 

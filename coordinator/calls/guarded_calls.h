@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/task.h"
 
 namespace tcs {

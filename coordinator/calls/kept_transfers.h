@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/task.h"
 
 namespace tcs {

@@ -5,7 +5,7 @@
 
 #include "coordinator/calls/call_files.h"
 #include "coordinator/calls/raw_semaphores.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

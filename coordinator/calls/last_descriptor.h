@@ -2,7 +2,7 @@
 // (SO_LINGER). The clients' processes are all that can have others, as far as /proc tells.
 #pragma once
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/task.h"
 

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/run_state.h"
 #include "shm/local_sockets.h"
 

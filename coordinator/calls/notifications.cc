@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "coordinator/calls/signal_reach.h"
-#include "coordinator/os/host.h"
 #include "coordinator/processes/counter_reads.h"
 
 namespace tcs {

@@ -9,7 +9,6 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <x86gprintrin.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +17,10 @@
 #include <system_error>
 #include <vector>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/socket_tables.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/borrowed.h"
 
 namespace tcs {
@@ -306,7 +306,7 @@ void OutsideWaits::Closes(int fd) {
 
 // The peer has been at work since the program began to send, however late this process hears of it.
 HostDuration OutsideWaits::SinceTsc(std::uint64_t tsc) const {
-  const std::uint64_t now = __rdtsc();
+  const std::uint64_t now = HostTsc();
   if (tsc > now) return {};
   const double passed_ns = static_cast<double>(now - tsc) / run_.ticks_per_ns;
   return std::min(kLongestNews, HostNs(std::llround(std::min(passed_ns, 1e18))));

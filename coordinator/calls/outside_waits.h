@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/processes/peers.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/run_state.h"

@@ -21,7 +21,7 @@
 #include "coordinator/calls/raw_transfers.h"
 #include "coordinator/calls/raw_usage.h"
 #include "coordinator/calls/spawns.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/waker.h"
 
 namespace tcs {

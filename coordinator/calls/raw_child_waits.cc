@@ -10,7 +10,8 @@
 #include <fstream>
 #include <string>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
 
 namespace tcs {
 

@@ -3,7 +3,7 @@
 // For the coordinator's thread only.
 #pragma once
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/processes/unknown_children.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"

@@ -6,7 +6,7 @@
 
 #include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/calls/kernel_object_waits.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/activations.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"

@@ -3,8 +3,9 @@
 #include <errno.h>
 #include <sys/syscall.h>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/own_number.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/processes/cpu_limit.h"
 #include "coordinator/tasks/client_values.h"
 

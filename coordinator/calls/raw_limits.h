@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {

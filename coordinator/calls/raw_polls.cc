@@ -13,9 +13,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/signal_bits.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/borrowed.h"
 #include "coordinator/tasks/client_values.h"
 

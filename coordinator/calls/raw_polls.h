@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "coordinator/calls/descriptor_waits.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/waker.h"
 #include "shm/layout.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/traps.h"
 
 namespace tcs {
 

@@ -3,7 +3,7 @@
 // Asks the kernel, and reads the client's memory. For the coordinator's thread only.
 #pragma once
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/task.h"
 
 namespace tcs {

@@ -10,9 +10,10 @@
 
 #include <utility>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/timer_descriptor.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/processes/usage_book.h"
 #include "coordinator/tasks/borrowed.h"
 #include "coordinator/tasks/client_values.h"

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "coordinator/calls/timer_calls.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {

@@ -9,7 +9,7 @@
 #include "coordinator/calls/outside_waits.h"
 #include "coordinator/calls/raw_draws.h"
 #include "coordinator/calls/raw_timers.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/activations.h"
 #include "coordinator/tasks/waker.h"
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "coordinator/os/kernel_usage.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "coordinator/calls/scheduling_rights.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

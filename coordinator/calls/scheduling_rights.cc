@@ -4,7 +4,7 @@
 #include <sched.h>
 #include <sys/resource.h>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

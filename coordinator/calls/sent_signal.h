@@ -5,7 +5,7 @@
 
 #include <sys/types.h>
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/run_state.h"
 #include "shm/layout.h"
 

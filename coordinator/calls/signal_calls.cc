@@ -1,11 +1,9 @@
 #include "coordinator/calls/signal_calls.h"
 
-#include <x86gprintrin.h>
-
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
 #include "coordinator/tasks/signal_sets.h"
 
 namespace tcs {
@@ -16,8 +14,8 @@ bool SignalCalls::Poll() {
   // The call in which the kernel holds a thread may be what has it send one: to the holder of a
   // lease, say, for whom the thread waits.
   const bool is_held_anew = waker_.unseen() > std::exchange(unseen_, waker_.unseen());
-  if (!awaited || (__rdtsc() < next_look_tsc_ && !is_held_anew)) return false;
-  next_look_tsc_ = __rdtsc() + clock_.TicksIn(kLookEvery.ns());
+  if (!awaited || (HostTsc() < next_look_tsc_ && !is_held_anew)) return false;
+  next_look_tsc_ = HostTsc() + clock_.TicksIn(kLookEvery.ns());
   bool ended = false;
   const VirtualTime now = run_.turn.lasts() ? run_.WrittenAt() : run_.latest;
   for (Task& task : run_.table.tasks()) {

@@ -1,7 +1,8 @@
 #include "coordinator/calls/signal_wakes.h"
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/signal_sets.h"
 
 namespace tcs {

@@ -10,7 +10,7 @@
 
 #include "coordinator/calls/sent_signal.h"
 #include "coordinator/host/active_threads.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/processes/undispatched_threads.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"

@@ -6,8 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/own_number.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
 
 namespace tcs {
 

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <utility>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/own_number.h"
 #include "coordinator/os/timer_descriptor.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "coordinator/calls/timer_signals.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
 #include "shm/layout.h"

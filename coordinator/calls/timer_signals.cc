@@ -4,8 +4,9 @@
 
 #include <algorithm>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/thread_signals.h"
 #include "coordinator/tasks/signal_sets.h"
 
 namespace tcs {

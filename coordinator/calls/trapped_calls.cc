@@ -2,7 +2,8 @@
 
 #include <sys/syscall.h>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
 
 namespace tcs {
 

@@ -9,7 +9,7 @@
 #include "coordinator/calls/raw_calls.h"
 #include "coordinator/calls/spawns.h"
 #include "coordinator/host/executor.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/processes/deaths.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"

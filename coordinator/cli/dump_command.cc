@@ -15,7 +15,7 @@
 #include "coordinator/dump/kernel.h"
 #include "coordinator/dump/outside.h"
 #include "coordinator/dump/state_text.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

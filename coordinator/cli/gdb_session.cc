@@ -15,7 +15,7 @@
 #include <string>
 
 #include "coordinator/cli/basics/exit_status.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

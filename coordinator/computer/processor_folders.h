@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <string>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

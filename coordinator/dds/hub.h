@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "coordinator/dds/message.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "shm/dds_exchange.h"
 #include "shm/layout.h"
 

@@ -19,12 +19,14 @@
 
 #include "coordinator/doctor/interpret.h"
 #include "coordinator/os/cpu_claim.h"
-#include "coordinator/os/host.h"
 #include "coordinator/os/own_computer.h"
 #include "coordinator/os/pipe.h"
 #include "coordinator/os/real_time_facts.h"
+#include "coordinator/os/spawning.h"
 #include "coordinator/os/trap.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/pidfds.h"
+#include "coordinator/port/traps.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

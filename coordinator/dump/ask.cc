@@ -8,13 +8,13 @@
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
-#include <x86gprintrin.h>
 
 #include <algorithm>
 #include <cstring>
 
-#include "coordinator/os/host.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/unique_fd.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -67,7 +67,7 @@ std::int64_t NsBefore(std::uint64_t now_tsc, std::uint64_t tsc, std::uint64_t ns
 }
 
 CoordinatorState StateOf(const StatePage& page) {
-  const std::uint64_t rate = CalibrateTsc(), now_tsc = __rdtsc();
+  const std::uint64_t rate = CalibrateTsc(), now_tsc = HostTsc();
   return {.doing = page.doing.load(),
           .since_ns = NsBefore(now_tsc, page.since_tsc.load(), rate),
           .host_cpu = page.host_cpu.load(),

@@ -21,8 +21,8 @@
 
 #include "coordinator/dump/state_page.h"
 #include "coordinator/os/files.h"
-#include "coordinator/os/host.h"
 #include "coordinator/os/own_number.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

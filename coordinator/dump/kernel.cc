@@ -10,7 +10,6 @@
 #include <sstream>
 #include <vector>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/mutex_owner.h"
 
 namespace tcs {

@@ -13,8 +13,8 @@
 
 #include "coordinator/dump/kernel.h"
 #include "coordinator/os/descendants.h"
-#include "coordinator/os/host.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/unique_fd.h"
 #include "shm/layout.h"
 
 namespace tcs {

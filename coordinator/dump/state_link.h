@@ -14,7 +14,7 @@
 
 #include "coordinator/dump/state_page.h"
 #include "coordinator/os/pipe.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

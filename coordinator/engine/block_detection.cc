@@ -7,7 +7,7 @@
 
 #include "coordinator/engine/wiring.h"
 #include "coordinator/os/call_names.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/cpu_clock.h"
 
 namespace tcs {

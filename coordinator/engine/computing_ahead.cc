@@ -1,6 +1,5 @@
 #include "coordinator/engine/computing_ahead.h"
 
-#include <x86gprintrin.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
@@ -8,7 +7,8 @@
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/cpu_places.h"
 #include "coordinator/os/guardian.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/cpu_clock.h"
 
 namespace tcs {
@@ -58,7 +58,7 @@ bool ComputingAhead::MaySend(const Task& task) const {
 
 void ComputingAhead::SendIfItComputes(Task& task) {
   if (cpus_.empty() || !MaySend(task)) return;
-  const std::uint64_t tsc = __rdtsc();
+  const std::uint64_t tsc = HostTsc();
   const auto cpu = std::find_if(cpus_.begin(), cpus_.end(), [&](const FurtherCpu& one) {
     const bool is_busy =
         beside_ != nullptr && beside_->cpu() == one.cpu() && beside_->IsBusyAt(tsc);
@@ -157,7 +157,7 @@ void ComputingAhead::ChargeAhead(Task& task) {
 
 // What it may have computed besides.
 VirtualDuration ComputingAhead::Uncertain(const Task& task) {
-  const std::int64_t host_ns = CpuOf(task).MayHaveComputedBy(__rdtsc());
+  const std::int64_t host_ns = CpuOf(task).MayHaveComputedBy(HostTsc());
   return task.ahead_from + task.metered.OnRobot(HostNs(host_ns)) - task.charged;
 }
 
@@ -195,7 +195,7 @@ void ComputingAhead::Look() {
 
 bool ComputingAhead::TakeTurn(Task& task, VirtualTime horizon) {
   if (!task.owes_ahead) return false;
-  parts_.run.turn.recorded_tsc = __rdtsc();  // what it pays takes no real time before its turn
+  parts_.run.turn.recorded_tsc = HostTsc();  // what it pays takes no real time before its turn
   if (task.is_ahead) {
     Await(task, horizon);
   } else if (task.debt <= VirtualDuration()) {
@@ -227,7 +227,7 @@ void ComputingAhead::Await(Task& task, VirtualTime horizon) {
     if (task.debt < to_go && task.debt + Uncertain(task) >= to_go) AskHowFar(task);
     // One that rests goes on as soon as it has paid.
     if (task.debt >= to_go || cpu.Rests()) break;
-    const std::uint64_t now_tsc = __rdtsc();
+    const std::uint64_t now_tsc = HostTsc();
     const bool looks = now_tsc >= looks_tsc;
     if (looks) looks_tsc = now_tsc + parts_.clock.TicksIn(kStateLookNs);
     const bool is_starved = cpu.IsStarvedBy(now_tsc);
@@ -238,9 +238,9 @@ void ComputingAhead::Await(Task& task, VirtualTime horizon) {
       break;
     }
     const std::uint64_t until_tsc = now_tsc + parts_.clock.TicksIn(kLookNs);
-    while (__rdtsc() < until_tsc) _mm_pause();
+    while (HostTsc() < until_tsc) _mm_pause();
   }
-  run.report.awaited_ns += parts_.clock.NsAt(__rdtsc()) - parts_.clock.NsAt(begun_tsc);
+  run.report.awaited_ns += parts_.clock.NsAt(HostTsc()) - parts_.clock.NsAt(begun_tsc);
 }
 
 void ComputingAhead::Pay(Task& task, VirtualTime horizon) {
@@ -255,7 +255,7 @@ void ComputingAhead::Pay(Task& task, VirtualTime horizon) {
   task.ComeTo(std::max(task.reached, end));
   parts_.run.latest = end;
   const ProgramClock& clock = task.process->clock;
-  parts_.records.Ran(task, {clock.At(start), clock.At(end)}, {start, end}, __rdtsc());
+  parts_.records.Ran(task, {clock.At(start), clock.At(end)}, {start, end}, HostTsc());
   if (!task.is_ahead) return;
   const VirtualDuration paid_in_all = task.charged - task.ahead_from - task.debt;
   CpuOf(task).Allow(task.metered.OnHost(paid_in_all + MostAhead()).ns());

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

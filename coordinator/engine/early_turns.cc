@@ -1,7 +1,5 @@
 #include "coordinator/engine/early_turns.h"
 
-#include <x86gprintrin.h>
-
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -9,8 +7,8 @@
 
 #include "coordinator/engine/turn_plan.h"
 #include "coordinator/engine/wiring.h"
-#include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
+#include "coordinator/port/clocks.h"
 #include "coordinator/tasks/cpu_clock.h"
 
 namespace tcs {
@@ -67,7 +65,7 @@ void EarlyTurns::BeginOn(VirtualCpu& cpu) {
   task.grant.read_safe_ns = task.grant.write_safe_ns = -1;
   task.grant.NoteLimits();
   task.grant.WriteTo(SlotOf(task).clock);
-  all_.host_cpu.StartBeside(task, __rdtsc());
+  all_.host_cpu.StartBeside(task, HostTsc());
   if (all_.beside.Begin(task, horizon)) Dispatcher::NoteTurnBegins(task);
 }
 

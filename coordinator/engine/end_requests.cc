@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "coordinator/os/end_signals.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
 
 namespace tcs {
 

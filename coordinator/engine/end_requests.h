@@ -1,7 +1,7 @@
 // The signals by which a run is asked to end.
 #pragma once
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/run_state.h"
 

@@ -1,14 +1,13 @@
 // A run from its first moment to its report.
 #include "coordinator/engine/engine.h"
 
-#include <x86gprintrin.h>
-
 #include <optional>
 #include <utility>
 
 #include "coordinator/gateway/gateway_robot.h"
 #include "coordinator/os/open_file_limit.h"
 #include "coordinator/os/own_computer.h"
+#include "coordinator/port/clocks.h"
 
 namespace tcs {
 
@@ -38,7 +37,7 @@ RunReport Engine::Run() {
   } catch (const DynamicsError& error) {
     run.report.error = error.what();
   }
-  all_.state_link.Does(Doing::kWrites, __rdtsc());
+  all_.state_link.Does(Doing::kWrites, HostTsc());
   all_.reporter.Conclude(all_.loop.reached_end() ? run.end : all_.world_leaf.FurthestOfRun());
   // First: what clients do at their end is no part of the run.
   const std::string& folder = run.options.output_directory;

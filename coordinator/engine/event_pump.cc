@@ -1,12 +1,11 @@
 #include "coordinator/engine/event_pump.h"
 
-#include <x86gprintrin.h>
-
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "coordinator/engine/wiring.h"
+#include "coordinator/port/clocks.h"
 
 namespace tcs {
 
@@ -50,7 +49,7 @@ Reactor::Found EventPump::LookOnce(HostDuration timeout, Moment moment, bool is_
   if (sleeps && run_.turn.lasts()) {
     all_.state_link.Does(Doing::kAwaitsThread, all_.host_cpu.stop_tsc());
   } else if (sleeps) {
-    all_.state_link.Does(Doing::kAwaitsEvents, __rdtsc());
+    all_.state_link.Does(Doing::kAwaitsEvents, HostTsc());
   }
   const std::size_t n = all_.reactor.Wait(timeout);
   if (!is_rest) all_.host_cpu.Woke();

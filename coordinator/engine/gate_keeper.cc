@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "coordinator/engine/wiring.h"
-#include "coordinator/os/host.h"
+#include "coordinator/os/trap.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/thread_signals.h"
 #include "coordinator/tasks/cpu_clock.h"
 #include "coordinator/tasks/run_clock.h"
 

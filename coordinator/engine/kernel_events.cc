@@ -1,12 +1,12 @@
 #include "coordinator/engine/kernel_events.h"
 
 #include <sys/epoll.h>
-#include <x86gprintrin.h>
 
 #include <algorithm>
 
 #include "coordinator/engine/wiring.h"
 #include "coordinator/os/open_file_limit.h"
+#include "coordinator/port/clocks.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -149,7 +149,7 @@ Reactor::Found KernelEvents::OnDetectorEnd(Subject, std::uint32_t, Moment) {
 // Nothing comes of it for the run.
 Reactor::Found KernelEvents::OnStateAsked(Subject, std::uint32_t, Moment) {
   if (all_.state_link.TakeAsked())
-    all_.state_link.Answer(all_.state_dump.Text(all_.home_processor.cpu(), __rdtsc()));
+    all_.state_link.Answer(all_.state_dump.Text(all_.home_processor.cpu(), HostTsc()));
   return {};
 }
 

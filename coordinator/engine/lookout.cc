@@ -1,12 +1,11 @@
 #include "coordinator/engine/lookout.h"
 
-#include <x86gprintrin.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
 #include "coordinator/engine/wiring.h"
+#include "coordinator/port/clocks.h"
 
 namespace tcs {
 
@@ -20,7 +19,7 @@ constexpr int kShowsPerFlush = 5;
 }  // namespace
 
 void Lookout::Look() {
-  const std::uint64_t begun_tsc = __rdtsc();
+  const std::uint64_t begun_tsc = HostTsc();
   if (run_.IsInGrace() || begun_tsc < next_look_tsc_) return;
   all_.state_link.Does(Doing::kWrites, begun_tsc);
   all_.block_detection.LookAtDetector();
@@ -39,7 +38,7 @@ void Lookout::Look() {
   }
   if (run_.options.on_notice)
     all_.standstill.Look(all_.pacing.RunningTime(), all_.world_leaf.FurthestOfRun());
-  const std::uint64_t now_tsc = __rdtsc();
+  const std::uint64_t now_tsc = HostTsc();
   all_.state_link.Does(Doing::kSchedules, now_tsc);
   next_look_tsc_ =
       now_tsc + std::max(all_.clock.TicksIn(kLookEveryNs), (now_tsc - begun_tsc) * kLookPause);

@@ -1,12 +1,11 @@
 #include "coordinator/engine/run_end.h"
 
-#include <x86gprintrin.h>
-
 #include <algorithm>
 
 #include "coordinator/engine/wiring.h"
 #include "coordinator/os/descendants.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/levels.h"
 
 namespace tcs {
 
@@ -42,7 +41,7 @@ void RunEnd::BeginGrace() {
 // None of those that are killed may keep the processor meanwhile, nor this process, which
 // waits in the kernel for the last steps of their threads.
 void RunEnd::Shutdown() {
-  all_.state_link.Does(Doing::kEnds, __rdtsc());
+  all_.state_link.Does(Doing::kEnds, HostTsc());
   run_.header->shutdown.store(1);
   for (const Task& task : run_.table.tasks()) {
     if (task.state != TaskState::kDead) LeaveRealTime(task.tid);

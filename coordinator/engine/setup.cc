@@ -7,7 +7,6 @@
 #include <sys/prctl.h>
 #include <time.h>
 #include <unistd.h>
-#include <x86gprintrin.h>
 
 #include <cmath>
 #include <cstring>
@@ -25,9 +24,12 @@
 #include "coordinator/host/measured_meter.h"
 #include "coordinator/host/shared_cpu_meter.h"
 #include "coordinator/os/guardian.h"
-#include "coordinator/os/host.h"
 #include "coordinator/os/shared_memory.h"
+#include "coordinator/os/spawning.h"
 #include "coordinator/os/tsc_facts.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/levels.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/processes/client_folders.h"
 #include "coordinator/scenario/patience.h"
 #include "coordinator/tasks/signal_sets.h"
@@ -56,7 +58,7 @@ void Setup::Connect() {
 std::string Setup::Prepare() {
   KeepFreedMemory();
   all_.state_link.Open(run_.options.output_directory);
-  all_.state_link.Does(Doing::kPrepares, __rdtsc());
+  all_.state_link.Does(Doing::kPrepares, HostTsc());
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
   if (!run_.IsFixed() && KindOfHostsTsc() == TscKind::kNoClock) {
@@ -100,16 +102,21 @@ std::string Setup::Prepare() {
     if (std::string error = OpenAnswers(); !error.empty()) return error;
   }
   if (std::string error = PrepareFolders(run_.scenario, run_.options); !error.empty()) return error;
-  all_.clock.Calibrate();
   all_.world.UseProcessors(all_.home_processor.helpers());
   prctl(PR_SET_CHILD_SUBREAPER, 1);
+  return PrepareParts(further);
+}
+
+std::string Setup::PrepareParts(const std::vector<int>& further_cpus) {
+  const int home = all_.home_processor.cpu();
+  all_.clock.Calibrate();
   all_.kernel_events.Register();
   if (all_.state_link.wake_fd() >= 0) {
     all_.reactor.Add(all_.state_link.wake_fd(), EPOLLIN, {Tag::kStateAsked});
   }
   if (std::string error = PrepareMemory(); !error.empty()) return error;
-  all_.beside.Open(home, further);
-  all_.ahead.Open(home, further, all_.beside.cpu());
+  all_.beside.Open(home, further_cpus);
+  all_.ahead.Open(home, further_cpus, all_.beside.cpu());
   if (std::string error = all_.dds.Open(); !error.empty()) return error;
   if (all_.network.present()) all_.dds.UseNetwork(*all_.network.wire());
   if (all_.world.present())

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "coordinator/engine/engine_part.h"
 
@@ -18,6 +19,9 @@ class Setup : public EnginePart {
   void Connect();
   // Empty on success, else one sentence.
   [[nodiscard]] std::string Prepare();
+  // Of that, what takes nothing of the machine's: the run's memory, and those who hear of its
+  // events. The same is returned.
+  [[nodiscard]] std::string PrepareParts(const std::vector<int>& further_cpus);
   void MakeRobots();
 
  private:

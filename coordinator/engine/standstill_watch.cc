@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/wait_text.h"
 
 namespace tcs {

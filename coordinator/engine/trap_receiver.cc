@@ -7,7 +7,9 @@
 #include "coordinator/calls/call_files.h"
 #include "coordinator/calls/last_descriptor.h"
 #include "coordinator/engine/wiring.h"
-#include "coordinator/os/host.h"
+#include "coordinator/os/trap.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
 #include "shm/check.h"
 
 namespace tcs {

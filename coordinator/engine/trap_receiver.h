@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "coordinator/engine/engine_part.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/task.h"
 

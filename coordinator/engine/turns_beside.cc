@@ -1,12 +1,12 @@
 #include "coordinator/engine/turns_beside.h"
 
-#include <x86gprintrin.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
 
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/guardian.h"
+#include "coordinator/port/clocks.h"
 
 namespace tcs {
 
@@ -51,7 +51,7 @@ void TurnsBeside::Open(int home, const std::vector<int>& further) {
 bool TurnsBeside::MayBegin() {
   const RunState& run = parts_.run;
   return cpu_ != nullptr && cpu_->begun() < kMostBegun && !run.IsInGrace() &&
-         run.options.debugged.empty() && cpu_->IsFreeAt(__rdtsc());
+         run.options.debugged.empty() && cpu_->IsFreeAt(HostTsc());
 }
 
 bool TurnsBeside::MayBegin(const Robot& robot) {
@@ -71,7 +71,7 @@ bool TurnsBeside::MayBegin(const Task& task) {
 
 bool TurnsBeside::IsTaken() {
   if (!parts_.ahead.IsOn(cpu_->cpu())) return false;
-  cpu_->NoteWanted(__rdtsc());
+  cpu_->NoteWanted(HostTsc());
   return true;
 }
 
@@ -92,12 +92,12 @@ bool TurnsBeside::IsOver(const Task& task) const {
 bool TurnsBeside::Await(Task& task) {
   Beat();
   const RunClock& clock = parts_.clock;
-  const std::uint64_t begun_tsc = __rdtsc(), look_ticks = clock.TicksIn(kLookBesideNs);
+  const std::uint64_t begun_tsc = HostTsc(), look_ticks = clock.TicksIn(kLookBesideNs);
   const std::uint64_t until_tsc = begun_tsc + clock.TicksIn(kPatienceNs);
   std::uint64_t now_tsc = begun_tsc, look_tsc = begun_tsc + look_ticks;
   while (!IsOver(task) && now_tsc < until_tsc) {
     _mm_pause();
-    now_tsc = __rdtsc();
+    now_tsc = HostTsc();
     if (now_tsc < look_tsc) continue;
     look_tsc = now_tsc + look_ticks;
     poll_({parts_.run.latest});

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "coordinator/engine/wiring.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

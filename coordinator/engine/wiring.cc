@@ -2,8 +2,8 @@
 
 #include "coordinator/host/fifo_executor.h"
 #include "coordinator/host/gate_executor.h"
-#include "coordinator/os/host.h"
 #include "coordinator/os/real_time_facts.h"
+#include "coordinator/port/pidfds.h"
 #include "coordinator/scenario/patience.h"
 
 namespace tcs {

@@ -75,7 +75,7 @@
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/network/robot_network.h"
 #include "coordinator/os/real_time_right.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/processes/bare_programs.h"
 #include "coordinator/processes/births.h"
 #include "coordinator/processes/deaths.h"

@@ -1,12 +1,11 @@
 #include "coordinator/engine/world_leaf.h"
 
-#include <x86gprintrin.h>
-
 #include <algorithm>
 
 #include "coordinator/engine/turn_plan.h"
 #include "coordinator/engine/wiring.h"
 #include "coordinator/os/guardian.h"
+#include "coordinator/port/clocks.h"
 
 namespace tcs {
 
@@ -21,11 +20,11 @@ bool WorldLeaf::Step() {
   if (limit - now <= lag && all_.world.NextStop() > limit) return false;
   run_.latest = std::max(run_.latest, std::min(now, limit));
   Beat();
-  const std::uint64_t begun_tsc = __rdtsc();
+  const std::uint64_t begun_tsc = HostTsc();
   all_.state_link.Does(Doing::kIntegrates, begun_tsc);
   const bool sent = all_.world.Advance(limit);
   if (all_.world.HasHadHelp()) all_.ahead.MakeRoomForHelpers();
-  const std::uint64_t ended_tsc = __rdtsc();
+  const std::uint64_t ended_tsc = HostTsc();
   all_.state_link.Does(Doing::kSchedules, ended_tsc);
   all_.records.Integrated({now, all_.world.progress()}, {begun_tsc, ended_tsc});
   run_.root.UpdateDynamics(all_.world.progress(), all_.world.NextOutput());
@@ -48,10 +47,10 @@ VirtualTime WorldLeaf::KeepNear(const Task& task, VirtualTime horizon) {
                                .drift_bound = run_.scenario.drift_bound,
                                .computes = task.used_up >= Task::kComputes});
   if (to.has_value()) {
-    const std::uint64_t begun_tsc = __rdtsc();
+    const std::uint64_t begun_tsc = HostTsc();
     all_.state_link.Does(Doing::kIntegrates, begun_tsc);
     all_.world.Lead(now, std::min(*to, all_.world.NextStop()));
-    const std::uint64_t ended_tsc = __rdtsc();
+    const std::uint64_t ended_tsc = HostTsc();
     all_.state_link.Does(Doing::kSchedules, ended_tsc);
     all_.records.Integrated({world, all_.world.progress()}, {begun_tsc, ended_tsc});
     run_.root.UpdateDynamics(all_.world.progress(), all_.world.NextOutput());

@@ -21,7 +21,7 @@
 #include "coordinator/gateway/half.h"
 #include "coordinator/gateway/ros_graph.h"
 #include "coordinator/gateway/served_end.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace {
 

@@ -4,14 +4,15 @@
 #include <signal.h>
 #include <sys/syscall.h>
 #include <unistd.h>
-#include <x86gprintrin.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "coordinator/host/host_cpu.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/levels.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 
@@ -80,7 +81,7 @@ void BesideCpu::OpenGates() {
   RunOnlyWhenIdle();
   opener_tid_.store(gettid());
   while (!ends_.load()) {
-    while (OpenNext() || __rdtsc() < awake_until_tsc_.load(std::memory_order_relaxed)) _mm_pause();
+    while (OpenNext() || HostTsc() < awake_until_tsc_.load(std::memory_order_relaxed)) _mm_pause();
     sleeps_.store(1);
     if (asked_.load() != opened_) continue;
     if (ends_.load()) return;
@@ -151,7 +152,7 @@ bool BesideCpu::Begin(HostThread& thread) {
   thread.turns_beside = true;
   thread.parked = false;
   ++begun_;
-  const std::uint64_t tsc = __rdtsc();
+  const std::uint64_t tsc = HostTsc();
   NoteWanted(tsc);
   awake_until_tsc_.store(tsc + TicksIn(kAwakeNs));
   thread.slot_memory->saying.store(Saying::kRuns);
@@ -179,7 +180,7 @@ bool BesideCpu::HasSaid(const HostThread& thread) {
 
 std::uint64_t BesideCpu::StoppedAt(const HostThread& thread) {
   return std::clamp<std::uint64_t>(thread.slot_memory->stopped_tsc, thread.grant.base_tsc,
-                                   __rdtsc());
+                                   HostTsc());
 }
 
 void BesideCpu::Take(HostThread& thread) {
@@ -209,10 +210,10 @@ bool BesideCpu::GiveUp(HostThread& thread) {
 // Others may have its processor, where it runs only when nobody else does: then it goes before
 // them until it is done.
 void BesideCpu::AwaitOpener() {
-  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostOpenNs);
+  const std::uint64_t until_tsc = HostTsc() + TicksIn(kMostOpenNs);
   bool is_helped = false;
   while (opens_.load()) {
-    if (is_helped || __rdtsc() < until_tsc) {
+    if (is_helped || HostTsc() < until_tsc) {
       _mm_pause();
       continue;
     }
@@ -239,8 +240,8 @@ void BesideCpu::BringHome(HostThread& thread) {
   auto asked = static_cast<std::uint32_t>(thread.tid);
   sends_.store(asked);
   Wake(sends_);
-  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostWayBackNs);
-  while (sends_.load() == asked && __rdtsc() < until_tsc) _mm_pause();
+  const std::uint64_t until_tsc = HostTsc() + TicksIn(kMostWayBackNs);
+  while (sends_.load() == asked && HostTsc() < until_tsc) _mm_pause();
   if (sends_.compare_exchange_strong(asked, 0)) {
     // The kernel holds the one that was asked.
     executor_.Hold(thread.tid);

@@ -1,9 +1,9 @@
 // By real-time priorities, as the paper does it: all of a run share one processor under SCHED_FIFO,
-// and whoever may run has the level above the others' (os/host.h).
+// and whoever may run has the level above the others' (port/levels.h).
 #pragma once
 
 #include "coordinator/host/executor.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/levels.h"
 
 namespace tcs {
 

@@ -4,13 +4,14 @@
 #include <signal.h>
 #include <sys/syscall.h>
 #include <unistd.h>
-#include <x86gprintrin.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/levels.h"
+#include "coordinator/port/proc_files.h"
 #include "shm/time_values.h"
 
 namespace tcs {
@@ -91,7 +92,7 @@ void FurtherCpu::Fetch() {
 }
 
 void FurtherCpu::Leave() {
-  left_at_ns_ = PassedNs(__rdtsc());
+  left_at_ns_ = PassedNs(HostTsc());
   place_.store(Place::kLeft);
 }
 
@@ -115,7 +116,7 @@ std::int64_t FurtherCpu::NsToGuard() {
 
 // The thread does not run meanwhile, so that its CPU clock is right.
 std::int64_t FurtherCpu::LeftAfterLook() {
-  const std::uint64_t tsc = __rdtsc();
+  const std::uint64_t tsc = HostTsc();
   const std::int64_t computed_ns = std::max<std::int64_t>(0, ReadComputed());
   ahead_.Know(PassedNs(tsc), computed_ns);
   ++looked_;
@@ -125,15 +126,15 @@ std::int64_t FurtherCpu::LeftAfterLook() {
 // The thread does not compute while this one looks whether it may. Another limit ends that, and so
 // does the coordinator where it takes the thread home, for which it waits until nobody looks.
 std::int64_t FurtherCpu::LeftAfterRest() {
-  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kLongestRestNs);
+  const std::uint64_t until_tsc = HostTsc() + TicksIn(kLongestRestNs);
   const std::int64_t limit_ns = allowed_ns_.load();
   if (limit_ns <= 0) return 0;  // it is wanted at home
   ahead_.Rest();
   while (allowed_ns_.load() == limit_ns && may_rest_.load() && !ends_.load() &&
-         place_.load() == Place::kHere && __rdtsc() < until_tsc) {
+         place_.load() == Place::kHere && HostTsc() < until_tsc) {
     _mm_pause();
   }
-  ahead_.GoOn(PassedNs(__rdtsc()));
+  ahead_.GoOn(PassedNs(HostTsc()));
   return place_.load() == Place::kHere ? LeftAfterLook() : kForEverNs;
 }
 
@@ -196,10 +197,10 @@ std::int64_t FurtherCpu::MayHaveComputedBy(std::uint64_t tsc) const {
 bool FurtherCpu::HaveLooked() {
   const std::uint32_t looked = looked_.load();
   WakeWarden();
-  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostLookNs);
+  const std::uint64_t until_tsc = HostTsc() + TicksIn(kMostLookNs);
   while (looked_.load() == looked) {
     if (Rests() || HasLeft()) return true;  // then it is known
-    if (__rdtsc() >= until_tsc) return false;
+    if (HostTsc() >= until_tsc) return false;
     _mm_pause();
   }
   return true;
@@ -214,15 +215,15 @@ bool FurtherCpu::IsStarvedBy(std::uint64_t tsc) {
 // kernel would have this process sleep until a thread that runs elsewhere has stopped, and others
 // would run meanwhile whose turn it is not.
 void FurtherCpu::AwaitStandstill() const {
-  const std::uint64_t sleeps_by_tsc = __rdtsc() + TicksIn(kWayToSleepNs);
-  while (ThreadState(tid_) == 'R' && __rdtsc() < sleeps_by_tsc) _mm_pause();
+  const std::uint64_t sleeps_by_tsc = HostTsc() + TicksIn(kWayToSleepNs);
+  while (ThreadState(tid_) == 'R' && HostTsc() < sleeps_by_tsc) _mm_pause();
 }
 
 void FurtherCpu::HaveSentHome() {
   allowed_ns_.store(0);
   WakeWarden();
-  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostWayHomeNs);
-  while (!HasLeft() && __rdtsc() < until_tsc) _mm_pause();
+  const std::uint64_t until_tsc = HostTsc() + TicksIn(kMostWayHomeNs);
+  while (!HasLeft() && HostTsc() < until_tsc) _mm_pause();
 }
 
 // The warden acts on a thread only as long as it is its: it has looked away before the coordinator
@@ -250,7 +251,7 @@ void FurtherCpu::BringHome() {
   thread_->is_ahead = false;
   thread_ = nullptr;
   if (is_refused_.load()) not_before_tsc_ = UINT64_MAX;
-  if (is_claimed_.exchange(false)) LeaveToOthers(__rdtsc());
+  if (is_claimed_.exchange(false)) LeaveToOthers(HostTsc());
 }
 
 void FurtherCpu::LeaveToOthers(std::uint64_t tsc) {

@@ -25,7 +25,7 @@
 #include "coordinator/host/ahead_clock.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/host/host_thread.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

@@ -1,13 +1,12 @@
 // By the threads' own gates, for users who may not have real-time priorities. A thread that waits
 // at its gate runs when that is opened. One that was stopped elsewhere runs on until its next call,
 // which begins at its gate (RunHeader::gates_only); its clock stands still meanwhile. One that
-// computes is sent there by a signal (SendToGate of os/host.h).
+// computes is sent there by a signal (port/thread_signals.h).
 #pragma once
 
-#include <time.h>
-
 #include "coordinator/host/executor.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/waits.h"
 
 namespace tcs {
 
@@ -17,9 +16,8 @@ class GateExecutor final : public Executor {
   void Hold(pid_t) override {}
   // Others may have the processor first. Who computes instead of stopping is not waited for.
   void LetKernelFinish(pid_t tid) override {
-    const timespec turn{0, kTurnNs};
     for (int turns = 0; turns < kMostTurns; ++turns) {
-      nanosleep(&turn, nullptr);
+      Pause(kTurn);
       if (ThreadState(tid) != 'R') return;
     }
   }
@@ -27,7 +25,7 @@ class GateExecutor final : public Executor {
   bool StandsStill() const override { return false; }
 
  private:
-  static constexpr long kTurnNs = 100'000;
+  static constexpr HostDuration kTurn = HostDuration::Microseconds(100);
   static constexpr int kMostTurns = 1000;
 };
 

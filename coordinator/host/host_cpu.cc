@@ -1,12 +1,10 @@
 #include "coordinator/host/host_cpu.h"
 
-#include <linux/futex.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-#include <x86gprintrin.h>
-
 #include <algorithm>
 #include <utility>
+
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/waits.h"
 
 namespace tcs {
 
@@ -46,7 +44,7 @@ void HostCpu::Dispatch(HostThread& thread) {
   // Where something stops the coordinator before Start() (a tracer, SIGSTOP), the thread runs
   // meanwhile, by a clock that runs from here.
   if (thread.slot_memory != nullptr) {
-    thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = __rdtsc();
+    thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = HostTsc();
   }
   active_.Dispatch(thread);
   from_gate_ = std::exchange(thread.parked, false);
@@ -55,7 +53,7 @@ void HostCpu::Dispatch(HostThread& thread) {
 
 void HostCpu::OpenGate(shm::ThreadSlot& slot) {
   if (slot.gate.exchange(shm::kGateOpen) == shm::kGateWaiting) {
-    syscall(SYS_futex, &slot.gate, FUTEX_WAKE, 1, nullptr, nullptr, 0);
+    WakeAt(slot.gate);
   }
 }
 
@@ -84,7 +82,7 @@ void HostCpu::StartBeside(HostThread& thread, std::uint64_t tsc) {
   thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = tsc;
 }
 
-void HostCpu::Woke() { stop_tsc_ = __rdtsc(); }
+void HostCpu::Woke() { stop_tsc_ = HostTsc(); }
 
 // What the coordinator did meanwhile is not the thread's.
 void HostCpu::Continue(HostThread& thread) {

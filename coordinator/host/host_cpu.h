@@ -21,12 +21,12 @@
 #include <string>
 
 #include "coordinator/host/active_threads.h"
-#include "coordinator/host/block_detector.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/host/host_thread.h"
 #include "coordinator/host/ideal_meter.h"
 #include "coordinator/host/meter.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/block_detector.h"
+#include "coordinator/port/thread_signals.h"
 #include "shm/clock_page.h"
 #include "shm/layout.h"
 

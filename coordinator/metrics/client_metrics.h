@@ -16,7 +16,7 @@
 #include "coordinator/metrics/line_finder.h"
 #include "coordinator/metrics/metric_book.h"
 #include "coordinator/metrics/metric_line.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "coordinator/models/model_mistake.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 namespace {

@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "coordinator/os/files.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 namespace {

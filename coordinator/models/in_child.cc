@@ -14,7 +14,7 @@
 #include <exception>
 #include <fstream>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 namespace {

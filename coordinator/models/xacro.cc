@@ -15,7 +15,7 @@
 #include "coordinator/models/in_child.h"
 #include "coordinator/models/model_mistake.h"
 #include "coordinator/models/urdf_xml.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 
 namespace tcs {
 

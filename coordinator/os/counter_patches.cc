@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "coordinator/os/auxiliary_vector.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "shm/machine_code/image.h"
 #include "shm/machine_code/replacement_plan.h"
 #include "shm/machine_code/stand_in.h"

@@ -18,8 +18,8 @@
 
 #include "coordinator/os/claim_order.h"
 #include "coordinator/os/cpu_places.h"
-#include "coordinator/os/host.h"
 #include "coordinator/os/say.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

@@ -8,7 +8,8 @@
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/cpu_places.h"
 #include "coordinator/os/descendants.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/levels.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

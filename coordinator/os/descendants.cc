@@ -9,7 +9,8 @@
 
 #include <map>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/levels.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

@@ -15,10 +15,10 @@
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/end_signals.h"
 #include "coordinator/os/files.h"
-#include "coordinator/os/host.h"
 #include "coordinator/os/keeper.h"
 #include "coordinator/os/say.h"
 #include "coordinator/os/strays.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

@@ -18,11 +18,13 @@
 #include "coordinator/os/descendants.h"
 #include "coordinator/os/end_signals.h"
 #include "coordinator/os/files.h"
-#include "coordinator/os/host.h"
 #include "coordinator/os/say.h"
 #include "coordinator/os/signal_bits.h"
 #include "coordinator/os/strays.h"
 #include "coordinator/os/whereabouts.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/levels.h"
+#include "coordinator/port/proc_files.h"
 #include "shm/time_values.h"
 
 namespace tcs {

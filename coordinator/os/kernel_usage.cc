@@ -8,7 +8,7 @@
 #include <iterator>
 #include <string>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

@@ -1,6 +1,6 @@
 #include "coordinator/os/mutex_owner.h"
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 
 namespace tcs {
 

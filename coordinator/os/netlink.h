@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

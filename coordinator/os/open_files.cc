@@ -13,7 +13,7 @@
 #include <fstream>
 #include <string>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

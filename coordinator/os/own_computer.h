@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

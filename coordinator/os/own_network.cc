@@ -15,7 +15,7 @@
 #include <cstdint>
 
 #include "coordinator/os/real_time_facts.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

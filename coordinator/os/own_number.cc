@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

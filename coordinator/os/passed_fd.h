@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "shm/attach_protocol.h"
 
 namespace tcs {

@@ -13,8 +13,10 @@
 #include <optional>
 #include <utility>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/passed_fd.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/pidfds.h"
+#include "coordinator/port/proc_files.h"
 #include "shm/attach_protocol.h"
 
 namespace tcs {

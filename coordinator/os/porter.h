@@ -16,7 +16,7 @@
 #include <functional>
 #include <memory>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

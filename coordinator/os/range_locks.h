@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

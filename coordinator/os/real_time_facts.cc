@@ -14,8 +14,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/pipe.h"
+#include "coordinator/port/levels.h"
 
 namespace tcs {
 

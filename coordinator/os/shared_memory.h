@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

@@ -8,7 +8,7 @@
 
 #include <cstring>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/levels.h"
 
 namespace tcs {
 

@@ -7,10 +7,10 @@
 
 namespace tcs {
 
-// Those that have one of a run's levels (host.h) and are bound to that CPU alone. Found by asking
-// for each thread number, some 0.1 µs each; `pid_max` is the kernel's, read before. No path is
-// looked up in /proc: while one of those threads spins, the look-up could wait for another one that
-// is in the kernel and never gets on.
+// Those that have one of a run's levels (port/levels.h) and are bound to that CPU alone. Found by
+// asking for each thread number, some 0.1 µs each; `pid_max` is the kernel's, read before. No path
+// is looked up in /proc: while one of those threads spins, the look-up could wait for another one
+// that is in the kernel and never gets on.
 std::vector<pid_t> RealTimeThreadsOn(int cpu, int pid_max);
 
 // After a coordinator was killed: takes real-time priority from all of them, so that none of them

@@ -4,30 +4,12 @@
 #pragma once
 
 #include <sys/types.h>
-#include <sys/uio.h>
 
-#include <algorithm>
-#include <cstdint>
-#include <iterator>
-#include <optional>
 #include <vector>
 
+#include "coordinator/port/traps.h"
+
 namespace tcs {
-
-struct TrappedCall {
-  int listener = -1;     // where it arrived,
-  std::uint64_t id = 0;  // and what it is answered by there
-  pid_t tid = 0;
-  int number = 0;
-  std::uint64_t args[6] = {};
-
-  // True of a call that the kernel makes again as it was: something has ended the wait for its
-  // answer, and no handler has run that would have had it fail.
-  bool IsAgain(const TrappedCall& before) const {
-    return listener == before.listener && tid == before.tid && number == before.number &&
-           std::equal(std::begin(args), std::end(args), std::begin(before.args));
-  }
-};
 
 // What is trapped in some runs only.
 struct TrappedToo {
@@ -63,53 +45,5 @@ bool IsEnd(const TrappedCall& call);
 
 // It makes a thread or a process (clone_call.h).
 bool MakesTask(const TrappedCall& call);
-
-// The next call that waits at `listener`; none if its thread has gone meanwhile.
-std::optional<TrappedCall> ReceiveTrapped(int listener);
-
-// Ends the call with `result`, negative for an errno. False if the thread no longer waits there: a
-// signal has ended the call.
-bool AnswerTrapped(int listener, std::uint64_t id, std::int64_t result);
-// Ends it with a descriptor of the file, which the caller has from then on; `on_exec`: also when it
-// executes another program.
-bool AnswerTrappedByFile(int listener, std::uint64_t id, int file, bool on_exec);
-// The same without ending it. The number, or -1: errno is set.
-int PutFileInto(int listener, std::uint64_t id, int file, bool on_exec);
-// Lets the kernel carry it out.
-bool ContinueTrapped(int listener, std::uint64_t id);
-
-// While the call waits its process gets a copy of that descriptor of ours, under that number, which
-// names another one of its until then, and closed at an exec.
-bool GiveDescriptor(const TrappedCall& call, int ours, int number);
-
-// Results by which the kernel ends a call as it ends one of its own that a signal interrupts. It
-// knows them only in a thread that it has marked for a signal (IsMarkedForSignal, host.h); in any
-// other they would reach the program.
-namespace by_signal {
-inline constexpr int kAsFlagsSay = 512;      // with EINTR, or again if SA_RESTART (ERESTARTSYS)
-inline constexpr int kAgain = 513;           // it makes the call again (ERESTARTNOINTR)
-inline constexpr int kAgainUnlessRun = 514;  // with EINTR once a handler has run (ERESTARTNOHAND)
-}  // namespace by_signal
-
-constexpr bool EndsBySignal(std::int64_t result) {
-  return result <= -by_signal::kAsFlagsSay && result >= -by_signal::kAgainUnlessRun;
-}
-
-// True if its thread has not taken the answer yet, because it has not run since.
-bool HasAnswerToTake(int listener, std::uint64_t id);
-
-// Copies from another process's memory. False if it is not there.
-bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size);
-// The same from two places, which costs hardly more than from one.
-struct RemotePiece {
-  std::uint64_t address;
-  void* to;
-  std::size_t size;
-};
-bool ReadMemory(pid_t pid, const RemotePiece& first, const RemotePiece& second);
-bool WriteMemory(pid_t pid, std::uint64_t address, const void* from, std::size_t size);
-// As much as `size` from, or to, several places one after the other.
-bool ReadMemory(pid_t pid, const std::vector<iovec>& from, void* to, std::size_t size);
-bool WriteMemory(pid_t pid, const std::vector<iovec>& to, const void* from, std::size_t size);
 
 }  // namespace tcs

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "coordinator/os/auxiliary_vector.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

@@ -10,10 +10,10 @@
 #include <string>
 
 #include "coordinator/os/auxiliary_vector.h"
-#include "coordinator/os/host.h"
-#include "coordinator/os/trap.h"
-#include "coordinator/os/unique_fd.h"
 #include "coordinator/os/vdso_calls.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/processes/counter_reads.h"
 #include "coordinator/scenario/elf_file.h"
 

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/own_number.h"
+#include "coordinator/port/pidfds.h"
 #include "coordinator/processes/cpu_limit.h"
 
 namespace tcs {

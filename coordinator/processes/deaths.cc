@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/processes/slot_check.h"
 #include "coordinator/tasks/cpu_clock.h"
 

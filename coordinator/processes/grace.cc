@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/run_clock.h"
 #include "shm/time_values.h"
 

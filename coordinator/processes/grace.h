@@ -19,7 +19,7 @@
 #include <string>
 #include <utility>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/processes/unknown_children.h"
 #include "coordinator/tasks/moment.h"
 #include "coordinator/tasks/reactor.h"

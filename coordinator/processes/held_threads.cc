@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "coordinator/os/files.h"
-#include "coordinator/os/host.h"
+#include "coordinator/os/spawning.h"
 #include "shm/attach_protocol.h"
 
 namespace tcs {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "coordinator/host/host_cpu.h"
-#include "coordinator/os/host.h"
 #include "coordinator/os/open_file_limit.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/processes/attach_exchange.h"
 #include "coordinator/tasks/cpu_clock.h"
 #include "coordinator/tasks/spin_waits.h"

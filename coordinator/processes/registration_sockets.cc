@@ -17,7 +17,9 @@
 #include <string_view>
 #include <utility>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
 
 namespace tcs {
 

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "coordinator/os/own_computer.h"
-#include "coordinator/os/trap.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/traps.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/task.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/tasks/reactor.h"
 
 namespace tcs {

@@ -12,7 +12,7 @@
 // For the coordinator's thread only. Reads /proc.
 #pragma once
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {

@@ -7,13 +7,15 @@
 #include <cstdint>
 #include <utility>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/pidfds.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/waits.h"
 
 namespace tcs {
 
 namespace {
 
-constexpr useconds_t kTurnUs = 1'000;
+constexpr HostDuration kTurn = HostDuration::Milliseconds(1);
 
 }  // namespace
 
@@ -45,7 +47,7 @@ Process* UnknownChildren::Ended(pid_t pid) {
 bool UnknownChildren::LetRunBeside(const Process& parent) {
   LookFor(parent);
   if (!AnyRuns()) return false;
-  usleep(kTurnUs);
+  Pause(kTurn);
   return true;
 }
 

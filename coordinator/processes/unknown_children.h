@@ -11,7 +11,7 @@
 #include <map>
 #include <set>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/processes/unmanaged_threads.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/task_table.h"

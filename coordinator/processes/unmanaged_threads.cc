@@ -5,7 +5,9 @@
 
 #include <utility>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/levels.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/cpu_clock.h"
 
 namespace tcs {

@@ -1,6 +1,6 @@
 #include "coordinator/processes/usage_book.h"
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
 #include "coordinator/tasks/cpu_clock.h"
 
 namespace tcs {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/record/bag_storage.h"
 #include "coordinator/record/mcap_chunk.h"
 

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/scenario/elf_file.h"
 
 namespace tcs {

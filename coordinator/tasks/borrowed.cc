@@ -13,9 +13,9 @@
 #include <algorithm>
 #include <fstream>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/timer_descriptor.h"
+#include "coordinator/port/pidfds.h"
 #include "shm/time_values.h"
 
 namespace tcs {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/tasks/task.h"
 
 namespace tcs {

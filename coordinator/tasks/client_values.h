@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/task.h"
 #include "shm/time_values.h"
 

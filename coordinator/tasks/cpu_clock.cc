@@ -1,6 +1,6 @@
 #include "coordinator/tasks/cpu_clock.h"
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
 
 namespace tcs {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "coordinator/os/pipe.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "shm/layout.h"
 
 namespace tcs {

@@ -2,12 +2,11 @@
 
 #include <poll.h>
 #include <sys/epoll.h>
-#include <time.h>
 
 #include <utility>
 
+#include "coordinator/port/waits.h"
 #include "shm/check.h"
-#include "shm/time_values.h"
 
 namespace tcs {
 
@@ -58,10 +57,7 @@ void Reactor::Remove(int fd) { epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, fd, nullpt
 std::size_t Reactor::Wait(HostDuration timeout) {
   TCS_CHECK(!is_handling_);
   epoll_event events[kAtOnce];
-  const timespec at_most = shm::ToTimespec(timeout.ns());
-  const int found = epoll_pwait2(epoll_.get(), events, static_cast<int>(kAtOnce),
-                                 timeout < HostDuration() ? nullptr : &at_most, nullptr);
-  count_ = found < 0 ? 0 : static_cast<std::size_t>(found);
+  count_ = WaitForEvents(epoll_.get(), events, timeout);
   for (std::size_t i = 0; i < count_; ++i) {
     queue_[i] = {Unpacked(events[i].data.u64), events[i].events};
   }

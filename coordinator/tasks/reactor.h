@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/tasks/moment.h"
 
 namespace tcs {

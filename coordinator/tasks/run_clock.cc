@@ -1,9 +1,8 @@
 #include "coordinator/tasks/run_clock.h"
 
 #include <time.h>
-#include <x86gprintrin.h>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -18,7 +17,7 @@ void RunClock::Calibrate() {
 void RunClock::Start() {
   start_real_ns_ = HostClockNs(CLOCK_MONOTONIC);
   start_cpu_ns_ = HostClockNs(CLOCK_THREAD_CPUTIME_ID);
-  start_tsc_ = __rdtsc();
+  start_tsc_ = HostTsc();
 }
 
 std::uint64_t RunClock::TicksIn(std::int64_t ns) const {

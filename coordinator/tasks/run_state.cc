@@ -1,6 +1,6 @@
 #include "coordinator/tasks/run_state.h"
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 

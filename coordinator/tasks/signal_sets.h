@@ -3,7 +3,7 @@
 // For the coordinator's thread only.
 #pragma once
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "coordinator/os/trap.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/task.h"
 
 namespace tcs {

@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/queues/wait_queues.h"
 #include "coordinator/tasks/kept_files.h"
 #include "shm/layout.h"

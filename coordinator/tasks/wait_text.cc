@@ -11,8 +11,8 @@
 #include <string>
 #include <utility>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/trace/csv_file.h"
 
 namespace tcs {

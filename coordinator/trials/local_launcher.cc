@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "coordinator/os/cpu_places.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
 #include "coordinator/trials/run_process.h"
 #include "coordinator/trials/stop_signals.h"
 #include "coordinator/trials/trial_folder.h"

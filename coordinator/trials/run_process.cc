@@ -12,8 +12,8 @@
 
 #include <utility>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/own_network.h"
+#include "coordinator/port/pidfds.h"
 
 namespace tcs {
 

@@ -7,9 +7,9 @@
 
 #include <optional>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/stop_request.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

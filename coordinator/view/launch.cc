@@ -18,9 +18,9 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/pipe.h"
 #include "coordinator/os/shared_memory.h"
+#include "coordinator/port/pidfds.h"
 
 namespace tcs {
 

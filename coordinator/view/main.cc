@@ -14,7 +14,7 @@
 #include <string>
 
 #include "coordinator/os/say.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/view/server.h"
 
 namespace {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/view/control_page.h"
 
 namespace tcs {

@@ -14,7 +14,7 @@
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/cpu_places.h"
 #include "coordinator/os/file_errors.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
 #include "coordinator/world/csv_row.h"
 #include "coordinator/world/scene_text.h"
 #include "shm/check.h"

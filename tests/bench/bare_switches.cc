@@ -19,7 +19,7 @@
 #include <new>
 #include <vector>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs::bench {
 

@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 FOLDER = ROOT / "coordinator"
 
 # Of a run, while it goes on.
-NEVER_THROW = ("calls", "engine", "host", "network", "os", "policy", "processes", "queues", "tasks", "trace", "world")
-CLOSES = {"os/unique_fd.h": "the owner of descriptors", "os/files.cc": "tells whether a file was written whole"}
+NEVER_THROW = ("calls", "engine", "host", "network", "os", "policy", "port", "processes", "queues", "tasks", "trace", "world")
+CLOSES = {"port/unique_fd.h": "the owner of descriptors", "os/files.cc": "tells whether a file was written whole"}
 
 SENTENCE = re.compile(r"empty on success", re.IGNORECASE)
 RESULT = re.compile(r"^\s*(static\s+|virtual\s+)*(LoadResult<|std::variant<[^;]*std::string>\s+\w+\()")

@@ -12,7 +12,7 @@
 #include <utility>
 #include <variant>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

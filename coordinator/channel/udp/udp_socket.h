@@ -10,7 +10,7 @@
 #include <utility>
 #include <variant>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/scenario/scenario.h"
 #include "shm/own_receivers.h"
 

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 #include "coordinator/scenario/scenario.h"
 #include "shm/own_receivers.h"
 

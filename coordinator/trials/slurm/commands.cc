@@ -14,8 +14,8 @@
 #include <cstdint>
 #include <sstream>
 
-#include "coordinator/os/host.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/clocks.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 

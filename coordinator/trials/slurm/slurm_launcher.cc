@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "coordinator/os/files.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/clocks.h"
 #include "coordinator/trials/slurm/array_jobs.h"
 #include "coordinator/trials/slurm/commands.h"
 #include "coordinator/trials/slurm/environment.h"

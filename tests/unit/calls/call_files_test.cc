@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/pidfds.h"
 #include "coordinator/tasks/borrowed.h"
 
 namespace tcs {

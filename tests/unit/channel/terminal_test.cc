@@ -9,7 +9,7 @@
 #include <string>
 #include <variant>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/thread_signals.h"
 #include "shm/layout.h"
 
 namespace tcs {

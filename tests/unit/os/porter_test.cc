@@ -10,9 +10,9 @@
 
 #include <utility>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/passed_fd.h"
+#include "coordinator/port/proc_files.h"
 #include "shm/attach_protocol.h"
 
 namespace tcs {

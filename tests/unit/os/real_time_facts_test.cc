@@ -5,7 +5,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "coordinator/os/host.h"
+#include "coordinator/port/levels.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 namespace {

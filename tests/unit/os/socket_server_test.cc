@@ -4,7 +4,7 @@
 #include <netinet/in.h>
 #include <sys/stat.h>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 namespace {

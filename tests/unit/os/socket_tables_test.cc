@@ -13,7 +13,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 namespace tcs {
 namespace {

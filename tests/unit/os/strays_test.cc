@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "coordinator/os/cpu_claim.h"
-#include "coordinator/os/host.h"
 #include "coordinator/os/real_time_facts.h"
+#include "coordinator/port/levels.h"
 
 namespace tcs {
 namespace {

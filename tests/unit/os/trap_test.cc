@@ -1,3 +1,4 @@
+
 #include "coordinator/os/trap.h"
 
 #include <errno.h>
@@ -13,8 +14,9 @@
 #include <functional>
 #include <thread>
 
-#include "coordinator/os/host.h"
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/proc_files.h"
+#include "coordinator/port/traps.h"
+#include "coordinator/port/unique_fd.h"
 #include "shm/layout.h"
 
 namespace tcs {

@@ -1,6 +1,5 @@
-#include "coordinator/host/block_detector.h"
+#include "coordinator/port/block_detector.h"
 
-#include <fmt/format.h>
 #include <signal.h>
 #include <sys/eventfd.h>
 #include <sys/prctl.h>
@@ -11,8 +10,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "coordinator/host/bare_process.h"
-#include "coordinator/os/host.h"
+#include "coordinator/port/bare_process.h"
+#include "coordinator/port/levels.h"
+#include "coordinator/port/pidfds.h"
+#include "coordinator/port/proc_files.h"
 
 namespace tcs {
 
@@ -79,10 +80,10 @@ bool BlockDetector::IsDying() const { return tcs::IsDying(pid_); }
 
 std::string BlockDetector::HowItEnded() const {
   const std::optional<int> status = WaitStatusOf(pid_);
-  return fmt::format(
-      "the block detector (process {}) was killed by signal {}, and the run cannot go on without "
-      "it; what it has written until then can be read",
-      pid_, status.has_value() ? WTERMSIG(*status) : SIGKILL);
+  const int signal = status.has_value() ? WTERMSIG(*status) : SIGKILL;
+  return "the block detector (process " + std::to_string(pid_) + ") was killed by signal " +
+         std::to_string(signal) +
+         ", and the run cannot go on without it; what it has written until then can be read";
 }
 
 }  // namespace tcs

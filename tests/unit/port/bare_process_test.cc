@@ -1,4 +1,4 @@
-#include "coordinator/host/bare_process.h"
+#include "coordinator/port/bare_process.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>

@@ -1,4 +1,4 @@
-#include "coordinator/host/block_detector.h"
+#include "coordinator/port/block_detector.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "coordinator/os/unique_fd.h"
+#include "coordinator/port/unique_fd.h"
 
 #include <errno.h>
 #include <fcntl.h>

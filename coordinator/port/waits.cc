@@ -1,0 +1,28 @@
+#include "coordinator/port/waits.h"
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "shm/time_values.h"
+
+namespace tcs {
+
+std::size_t WaitForEvents(int epoll, std::span<epoll_event> events, HostDuration timeout) {
+  const timespec at_most = shm::ToTimespec(timeout.ns());
+  const int found = epoll_pwait2(epoll, events.data(), static_cast<int>(events.size()),
+                                 timeout < HostDuration() ? nullptr : &at_most, nullptr);
+  return found < 0 ? 0 : static_cast<std::size_t>(found);
+}
+
+void Pause(HostDuration duration) {
+  const timespec time = shm::ToTimespec(duration.ns());
+  nanosleep(&time, nullptr);
+}
+
+void WakeAt(std::atomic<std::uint32_t>& word) {
+  syscall(SYS_futex, &word, FUTEX_WAKE, 1, nullptr, nullptr, 0);
+}
+
+}  // namespace tcs

@@ -1,0 +1,24 @@
+// How the coordinator sleeps, and wakes threads that wait in memory that it shares with them.
+#pragma once
+
+#include <sys/epoll.h>
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+
+#include "shm/time_kinds.h"
+
+namespace tcs {
+
+// Until the epoll set has events, which are put there, and at most so long (negative: without
+// limit). How many there are. While it waits the programs' threads have the processor.
+std::size_t WaitForEvents(int epoll, std::span<epoll_event> events, HostDuration timeout);
+
+// Sleeps for so long, whatever comes meanwhile.
+void Pause(HostDuration duration);
+
+// One of those that sleep in the kernel at the word.
+void WakeAt(std::atomic<std::uint32_t>& word);
+
+}  // namespace tcs

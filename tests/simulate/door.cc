@@ -1,0 +1,121 @@
+// The shim's way into the kernel, where that is the simulated one: what the sources of the shim
+// that are built for it (TCS_SIMULATED_HOST) find in the place of the processor's instructions and
+// of the parts of the shim that are not here.
+#include <errno.h>
+#include <linux/futex.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdint>
+
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/porter.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/spinning/pauses.h"
+#include "libtcs_preload/timer_fds.h"
+#include "shm/check.h"
+#include "shm/time_values.h"
+#include "shm/tsc.h"
+#include "tests/simulate/kernel.h"
+
+namespace tcs::shm {
+
+std::uint64_t ReadTsc() {
+  constexpr std::int64_t kTakesNs = 12;
+  simulate::Kernel& kernel = simulate::Kernel::This();
+  kernel.Compute(kTakesNs, false);
+  return kernel.tsc();
+}
+
+}  // namespace tcs::shm
+
+namespace tcs::preload {
+
+namespace {
+
+using simulate::Kernel;
+using simulate::SimThread;
+
+// What a system call takes, and what a wait takes besides.
+constexpr std::int64_t kCallNs = 150, kWaitNs = 900;
+
+template <class T>
+T& At(long address) {
+  return *reinterpret_cast<T*>(address);
+}
+
+long ChangeMask(SimThread& thread, long how, long set, long before) {
+  if (before != 0) At<std::uint64_t>(before) = thread.blocked_signals;
+  if (set == 0) return 0;
+  const std::uint64_t signals = At<const std::uint64_t>(set);
+  const std::uint64_t blocked = thread.blocked_signals;
+  Kernel::This().SetBlocked(how == SIG_BLOCK     ? blocked | signals
+                            : how == SIG_UNBLOCK ? blocked & ~signals
+                                                 : signals);
+  return 0;
+}
+
+long ReadCpuClock(const SimThread& thread, long to) {
+  At<timespec>(to) = shm::ToTimespec(thread.cpu_ns);
+  return 0;
+}
+
+}  // namespace
+
+ProcessState* g_process = nullptr;
+__thread GuestThread t_thread __attribute__((tls_model("initial-exec")));
+const shm::RunMemory* g_run = nullptr;
+const shm::RunHeader* g_header = nullptr;
+int g_notify_fd = -1;
+int g_porter_fd = -1;
+
+long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
+  Kernel& kernel = Kernel::This();
+  kernel.Compute(kCallNs, false);
+  SimThread& thread = *kernel.running();
+  if (f != static_cast<long>(shm::kOwnCallMark)) return kernel.Trap(number, {a, b, c, d, e, f});
+  switch (number) {
+    case SYS_clock_gettime:
+      TCS_CHECK(a == CLOCK_THREAD_CPUTIME_ID);
+      return ReadCpuClock(thread, b);
+    case SYS_write: {
+      const long written =
+          write(static_cast<int>(a), reinterpret_cast<const void*>(b), static_cast<std::size_t>(c));
+      if (written > 0) kernel.Notified();
+      return written < 0 ? -errno : written;
+    }
+    case SYS_futex:
+      TCS_CHECK(b == FUTEX_WAIT && d != 0);
+      kernel.Compute(kWaitNs, false);
+      return kernel.WaitAt(At<const std::atomic<std::uint32_t>>(a), static_cast<std::uint32_t>(c),
+                           shm::ToNs(At<const timespec>(d)));
+    case SYS_rt_sigprocmask:
+      return ChangeMask(thread, a, b, c);
+    case SYS_rt_sigaction:
+      if (c != 0) memset(reinterpret_cast<void*>(c), 0, 4 * sizeof(long));
+      if (b != 0) kernel.SetHandler(At<const unsigned long>(b));
+      return 0;
+    case SYS_ppoll:
+      return 0;
+    default:
+      TCS_CHECK(!"a system call that the simulated kernel does not know");
+      return -ENOSYS;
+  }
+}
+
+void DieWithoutCoordinator(const char*) {
+  TCS_CHECK(!"a program ends for its coordinator is gone");
+}
+
+// Parts of the shim that a simulated program has no use for.
+GuestThread* CurrentSlow() { return nullptr; }
+GuestThread& StateInSharedStorage() { return t_thread; }
+void MakePorter() {}
+void NoteWhetherInLoop(GuestThread&, std::uintptr_t) {}
+bool IsTimerFd(int) { return false; }
+
+}  // namespace tcs::preload

@@ -1,0 +1,153 @@
+// A machine with one processor that exists in numbers only: its time, who of a run's threads has
+// the processor, what they wait for in the kernel, and what they have computed. The coordinator is
+// the code that runs outside of all threads; while it computes, sleeps or asks for something, time
+// passes here and nowhere else.
+//
+// The descriptors of the run (pipes, epoll sets) are the host's own: whether something is in them
+// is a matter of what threads have done before, not of time.
+//
+// What a kernel may do at any time, this one does by its seed: be late with timers, give the
+// processor to somebody of another's for a while, wake a thread for nothing, and, where priorities
+// do not forbid it, let threads run while the coordinator computes.
+//
+// There is one at a time, which the port's functions (port.cc) and the shim's door (door.cc) find
+// by Kernel::This().
+#pragma once
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "coordinator/port/levels.h"
+#include "coordinator/port/traps.h"
+#include "libtcs_preload/guest.h"
+#include "tests/simulate/fiber.h"
+#include "tests/simulate/luck.h"
+
+namespace tcs::simulate {
+
+// What threads share.
+struct SimProcess {
+  pid_t pid = 0;
+  int notify_fd = -1;      // its end of its pipe; the link's own
+  int trap_listener = -1;  // an eventfd, readable while a call waits there
+  preload::ProcessState state{preload::ProcessState::kAttached, false, {}, {}, {}};
+};
+
+struct SimThread {
+  enum class State { kRuns, kAtWord, kInTrap, kInKernel };
+
+  SimThread(pid_t its_tid, SimProcess& its_process, std::function<void()> body)
+      : tid(its_tid), process(its_process), fiber(std::move(body)) {}
+
+  const pid_t tid;
+  SimProcess& process;
+  Fiber fiber;
+  preload::GuestThread guest;  // while it is not entered
+  State state = State::kRuns;
+  int level = 0;
+  std::int64_t cpu_ns = 0;
+  // Of that, what its program has computed, rather than the shim and the kernel for it.
+  std::int64_t program_ns = 0;
+  std::uint64_t blocked_signals = 0;
+  std::optional<std::uint64_t> preemption;  // a signal that has come: for that dispatch
+  // What it waits for.
+  const std::atomic<std::uint32_t>* word = nullptr;
+  std::int64_t wakes_at_ns = INT64_MAX;
+  TrappedCall call;
+  bool call_is_taken = false;
+  long result = 0;  // of its wait
+};
+
+class Kernel {
+ public:
+  Kernel(std::uint64_t seed, bool has_levels);
+  ~Kernel();
+  Kernel(const Kernel&) = delete;
+  Kernel& operator=(const Kernel&) = delete;
+  static Kernel& This();
+
+  std::int64_t now_ns() const { return now_ns_; }
+  // Two ticks a nanosecond: a unit taken for another one shows.
+  std::uint64_t tsc() const { return static_cast<std::uint64_t>(now_ns_) * 2; }
+  bool has_levels() const { return has_levels_; }
+  Luck& luck() { return luck_; }
+
+  SimThread& AddThread(SimProcess& process, pid_t tid, std::function<void()> body);
+  SimThread* Find(pid_t tid);
+  const std::deque<SimThread>& threads() const { return threads_; }
+  std::vector<pid_t> ThreadsOf(pid_t pid) const;
+  // The CPU clock of a thread is read by a descriptor.
+  void OpensClock(int fd, pid_t tid) { clocks_[fd] = tid; }
+  SimThread* OfClock(int fd) { return Find(clocks_[fd]); }
+  // Null: the coordinator runs.
+  SimThread* running() { return running_; }
+
+  // The coordinator computes, or has the kernel do something for it. Where there are no levels
+  // others may come between.
+  void Spend(std::int64_t ns);
+  // It sleeps until `has_events`, at most so long (negative: without limit).
+  void Sleep(const std::function<bool()>& has_events, std::int64_t timeout_ns);
+  void ArmDetector(int fired_fd);
+  // Called with each thread that goes on with its program.
+  void OnProgram(std::function<void(const SimThread&)> watch) { watch_ = std::move(watch); }
+
+  // The running thread computes; `of_program`: what it is to be charged for.
+  void Compute(std::int64_t ns, bool of_program);
+  // It waits at the word while that has the value, and by the clock at most so long. Returns as the
+  // kernel does.
+  long WaitAt(const std::atomic<std::uint32_t>& word, std::uint32_t value, std::int64_t timeout_ns);
+  // It makes a call that the coordinator answers.
+  long Trap(long number, const long (&args)[6]);
+  // It is held by the kernel in a call that nobody is told of.
+  void BlockFor(std::int64_t ns);
+  // It has made something ready that the coordinator waits for.
+  void Notified();
+  // Its handler of the signal that sends threads to their gates, and its blocked signals.
+  void SetHandler(unsigned long handler) { handler_ = handler; }
+  void SetBlocked(std::uint64_t signals);
+
+  void WakeAt(const std::atomic<std::uint32_t>& word);
+  void SendToGate(pid_t tid, std::uint64_t dispatch);
+  std::optional<TrappedCall> ReceiveTrapped(int listener);
+  bool Answer(std::uint64_t id, long result);
+  bool HasAnswerToTake(std::uint64_t id);
+
+ private:
+  enum class Why { kSliceEnds, kHasSaid, kWaits };
+
+  SimThread* Next();
+  void Run(SimThread& thread, std::int64_t until_ns);
+  // The running thread stops here, until it has the processor again.
+  void Stop();
+  void Deliver(SimThread& thread);
+  void Wake(SimThread& thread, long result);
+  void WakeDue();
+  std::int64_t NextDue() const;
+  bool IsPreemptible(const SimThread& thread) const;
+  std::int64_t Lateness();
+
+  static Kernel* this_;
+
+  const bool has_levels_;
+  Luck luck_;
+  std::int64_t now_ns_;
+  std::deque<SimThread> threads_;
+  SimThread* running_ = nullptr;
+  std::int64_t until_ns_ = 0;
+  bool has_said_ = false;
+  int detector_fd_ = -1;  // armed
+  unsigned long handler_ = 0;
+  std::uint64_t last_call_ = 0;
+  std::map<int, pid_t> clocks_;
+  std::function<void(const SimThread&)> watch_;
+};
+
+}  // namespace tcs::simulate

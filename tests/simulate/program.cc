@@ -1,0 +1,129 @@
+#include "tests/simulate/program.h"
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+
+#include <algorithm>
+
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/preemption.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/virtual_clock.h"
+#include "tests/simulate/broken.h"
+
+namespace tcs::simulate {
+
+namespace {
+
+constexpr std::int64_t kUs = 1'000, kMs = 1'000'000;
+
+void Compute(std::int64_t ns) { Kernel::This().Compute(ns, true); }
+
+// As the C library makes it: nothing of the shim's is on the way.
+long Futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value) {
+  return preload::RawSyscall(SYS_futex, preload::Arg(&word), operation | FUTEX_PRIVATE_FLAG, value,
+                             0, 0, preload::kTrapped);
+}
+
+}  // namespace
+
+void SimProgram::Note(std::int64_t now_ns) {
+  if (now_ns < last_ns_) Broken("a clock went back from %ld to %ld", last_ns_, now_ns);
+  last_ns_ = now_ns;
+}
+
+std::int64_t SimProgram::ReadClock() {
+  preload::GuestThread* const guest = preload::Enter(preload::Concern::kNobody);
+  const std::int64_t now_ns = preload::NowNs(*guest);
+  Note(now_ns);
+  return now_ns;
+}
+
+void SimProgram::Sleep() {
+  const std::int64_t for_ns = luck_.Long(kUs, 20 * kMs);
+  const std::int64_t until_ns = ReadClock() + for_ns;
+  {
+    preload::Entered guest;
+    if (!preload::SleepUntil(*guest.thread(), until_ns)) Broken("a sleep was ended by a signal");
+  }
+  const std::int64_t now_ns = ReadClock();
+  if (now_ns < until_ns) Broken("a sleep until %ld was over at %ld", until_ns, now_ns);
+  if (rules_.has_own_core && now_ns > until_ns + rules_.slack_ns)
+    Broken("a sleep until %ld was over at %ld only", until_ns, now_ns);
+}
+
+// Whoever is woken is not earlier than whoever has woken it.
+void SimProgram::AwaitRelease(SimLock& lock) {
+  const std::size_t before = lock.woken_ns.size();
+  if (Futex(lock.word, FUTEX_WAIT, 2) != 0) return;
+  const std::int64_t now_ns = ReadClock();
+  const auto since = lock.woken_ns.begin() + static_cast<std::ptrdiff_t>(before);
+  if (since == lock.woken_ns.end()) Broken("a wait at a lock ended though nobody had released it");
+  const std::int64_t earliest_ns = *std::min_element(since, lock.woken_ns.end());
+  if (now_ns < earliest_ns)
+    Broken("a thread that was woken at %ld went on at %ld", earliest_ns, now_ns);
+}
+
+void SimProgram::Lock(SimLock& lock) {
+  std::uint32_t expected = 0;
+  Compute(20);
+  if (!lock.word.compare_exchange_strong(expected, 1)) {
+    while (lock.word.exchange(2) != 0) AwaitRelease(lock);
+  }
+  if (lock.holder != nullptr) Broken("two threads have one lock");
+  lock.holder = this;
+  const std::int64_t now_ns = ReadClock();
+  // What memory alone tells may come from as far ahead as cores are apart.
+  if (now_ns < lock.released_ns - rules_.drift_bound_ns)
+    Broken("a lock that was released at %ld was taken at %ld", lock.released_ns, now_ns);
+}
+
+void SimProgram::Unlock(SimLock& lock) {
+  lock.released_ns = ReadClock();
+  lock.holder = nullptr;
+  Compute(20);
+  if (lock.word.exchange(0) != 2) return;
+  lock.woken_ns.push_back(lock.released_ns);
+  Futex(lock.word, FUTEX_WAKE, 1);
+}
+
+void SimProgram::UseLock() {
+  SimLock& lock = locks_[static_cast<std::size_t>(
+      luck_.Between(0, static_cast<std::int64_t>(locks_.size()) - 1))];
+  Lock(lock);
+  Compute(luck_.Long(kUs / 5, kMs));
+  Unlock(lock);
+}
+
+void SimProgram::Act() {
+  switch (luck_.Between(0, rules_.has_kernel_waits ? 12 : 11)) {
+    case 0:
+    case 1:
+    case 2:
+      return Compute(luck_.Long(kUs / 5, 5 * kMs));
+    case 3:
+    case 4:
+    case 5:
+      return UseLock();
+    case 6:
+    case 7:
+    case 8:
+      return Sleep();
+    case 12:
+      return Kernel::This().BlockFor(luck_.Long(10 * kUs, 10 * kMs));
+    default:
+      ReadClock();
+  }
+}
+
+void SimProgram::Run(preload::GuestThread guest) {
+  preload::t_thread = guest;
+  preload::AllowPreemption();
+  preload::AwaitFirstDispatch(preload::t_thread);
+  for (;;) {
+    Act();
+    shown_.push_back(ReadClock());
+  }
+}
+
+}  // namespace tcs::simulate

@@ -1,0 +1,64 @@
+// What threads of simulated programs do, for ever, as their seeds say: they compute, read clocks,
+// sleep, lock, and stand in the kernel in calls that nobody is told of. They are the shim's guests
+// as any program's threads are: what they do goes through the shim's own sources.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "libtcs_preload/guest.h"
+#include "tests/simulate/kernel.h"
+#include "tests/simulate/luck.h"
+
+namespace tcs::simulate {
+
+// A lock as the C library's: a word, at which those sleep that find it taken.
+struct SimLock {
+  std::atomic<std::uint32_t> word{0};
+  std::int64_t released_ns = 0;  // by the clock of whoever released it last
+  const void* holder = nullptr;
+  std::vector<std::int64_t> woken_ns;  // when those were woken who slept, likewise
+};
+
+// What may be done, and what must hold besides.
+struct ProgramRules {
+  bool has_kernel_waits = false;
+  // Each thread of its robot has a core for itself: nobody waits for one.
+  bool has_own_core = false;
+  std::int64_t drift_bound_ns = 0;
+  // What a thread's clock may show beyond the end of a sleep: what it computes before it looks, and
+  // what others had of its processor since its clock was last checked.
+  std::int64_t slack_ns = 5'000 + 100'000;
+};
+
+class SimProgram {
+ public:
+  SimProgram(std::uint64_t seed, const ProgramRules& rules, std::deque<SimLock>& locks)
+      : luck_(seed), rules_(rules), locks_(locks) {}
+
+  // The thread's body.
+  [[noreturn]] void Run(preload::GuestThread guest);
+
+  // What its clock showed after each thing that it did.
+  const std::vector<std::int64_t>& shown() const { return shown_; }
+
+ private:
+  std::int64_t ReadClock();
+  void Sleep();
+  void AwaitRelease(SimLock& lock);
+  void Lock(SimLock& lock);
+  void Unlock(SimLock& lock);
+  void UseLock();
+  void Act();
+  void Note(std::int64_t now_ns);
+
+  Luck luck_;
+  const ProgramRules rules_;
+  std::deque<SimLock>& locks_;
+  std::vector<std::int64_t> shown_;
+  std::int64_t last_ns_ = 0;
+};
+
+}  // namespace tcs::simulate

@@ -1,0 +1,179 @@
+#include "tests/simulate/simulation.h"
+
+#include <fmt/format.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "tests/simulate/broken.h"
+
+namespace tcs::simulate {
+
+namespace {
+
+constexpr std::int64_t kUs = 1'000, kMs = 1'000'000;
+constexpr int kThreads = 8;
+constexpr pid_t kFirstPid = 1'000'000'000;
+
+HostPermits Permits(bool has_levels) {
+  HostPermits permits;
+  permits.real_time.error = has_levels ? 0 : EPERM;
+  return permits;
+}
+
+RunOptions Options(bool is_fixed) {
+  RunOptions options;
+  options.accounting = is_fixed ? shm::Accounting::kFixed : shm::Accounting::kMeasured;
+  options.date_ns = 0;
+  return options;
+}
+
+}  // namespace
+
+Scenario Simulation::ScenarioOf(Luck& luck) {
+  Scenario scenario;
+  scenario.duration = VirtualDuration::Seconds(3600);
+  scenario.drift_bound = VirtualNs(luck.Long(100 * kUs, 20 * kMs));
+  scenario.seed = luck.Next();
+  for (int robot = 0; robot < 3; ++robot) {
+    RobotSpec& spec = scenario.robots.emplace_back();
+    spec.name = fmt::format("robot{}", robot);
+    // At times each thread has one for itself.
+    spec.cores = luck.OnceIn(4) ? kThreads : static_cast<int>(luck.Between(1, 4));
+    for (std::int64_t clients = luck.Between(1, 2); clients > 0; --clients) {
+      ClientSpec& client = spec.clients.emplace_back();
+      client.name = fmt::format("{}/client{}", spec.name, spec.clients.size());
+      client.priority = static_cast<int>(luck.Between(0, 2));
+    }
+  }
+  return scenario;
+}
+
+Simulation::Simulation(const SimulationSeeds& seeds, bool has_levels, bool is_fixed)
+    : is_fixed_(is_fixed),
+      script_(seeds.script),
+      kernel_(seeds.host, has_levels),
+      all_(ScenarioOf(script_), Options(is_fixed), Permits(has_levels)) {
+  rules_.drift_bound_ns = all_.run.scenario.drift_bound.ns();
+  all_.setup.Connect();
+  if (std::string error = all_.setup.PrepareParts({}); !error.empty())
+    Broken("the run cannot be prepared: %s", error.c_str());
+  all_.setup.MakeRobots();
+  all_.clock.Start();
+  preload::g_run = all_.memory;
+  preload::g_header = all_.run.header;
+  rules_.has_kernel_waits = !is_fixed && seeds.script % 2 == 0;
+  AddPrograms(script_);
+  // With levels nobody computes out of turn, unless the kernel holds whoever has it.
+  if (has_levels && !rules_.has_kernel_waits) {
+    kernel_.OnProgram([this](const SimThread& thread) {
+      const Turn& turn = all_.run.turn;
+      if (!turn.lasts() || turn.task()->tid != thread.tid)
+        Broken("%d computes out of turn, at step %d", thread.tid, step_);
+    });
+  }
+}
+
+// Each client has a thread; the others are shared out.
+void Simulation::AddPrograms(Luck& luck) {
+  std::vector<Process*> clients;
+  pid_t pid = kFirstPid;
+  for (Robot& robot : all_.run.robots) {
+    for (const ClientSpec& client : all_.run.scenario.robots[robot.number - 1].clients) {
+      clients.push_back(all_.births.AddClient(pid, robot, client, {}).process);
+      pid += 1'000;
+    }
+  }
+  std::vector<int> threads(clients.size(), 1);
+  for (int left = kThreads - static_cast<int>(clients.size()); left > 0; --left)
+    ++threads[static_cast<std::size_t>(
+        luck.Between(0, static_cast<std::int64_t>(clients.size()) - 1))];
+  std::size_t number = 0;
+  for (Process* client : clients) {
+    client->link = ProcessLink::Make();
+    all_.reactor.Add(client->link->incoming_fd(), EPOLLIN, {Tag::kPipe, client->index});
+    SimProcess& process = processes_.emplace_back();
+    process.pid = client->pid;
+    process.notify_fd = client->link->notify_fd();
+    UniqueFd listener(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK | EFD_SEMAPHORE));
+    process.trap_listener = listener.get();
+    all_.traps.Add(std::move(listener));
+    std::deque<SimLock>& locks = locks_.emplace_back();
+    locks.resize(static_cast<std::size_t>(luck.Between(1, 3)));
+    for (int thread = 0; thread < threads[number]; ++thread)
+      AddThread(*client, client->pid + thread, thread == 0, luck, locks);
+    ++number;
+  }
+}
+
+void Simulation::AddThread(Process& process, pid_t tid, bool is_first, Luck& luck,
+                           std::deque<SimLock>& locks) {
+  Task& task = is_first ? *all_.run.table.Living(tid) : all_.births.AddThread(process, tid, {});
+  all_.registration.GivePlace(task, {}, 0, true);
+  task.is_adopted = false;
+  task.can_be_stopped = task.parked = true;
+  ProgramRules rules = rules_;
+  rules.has_own_core = process.robot->cpus.size() >= kThreads;
+  SimProgram& program = programs_.emplace_back(luck.Next(), rules, locks);
+  preload::GuestThread guest;
+  guest.slot = task.slot_memory;
+  guest.index = static_cast<std::uint32_t>(task.slot);
+  guest.pid = process.pid;
+  guest.tid = tid;
+  kernel_.AddThread(processes_.back(), tid, [&program, guest] { program.Run(guest); });
+  tasks_.push_back(&task);
+}
+
+int Simulation::Run(int steps) {
+  for (step_ = 0; step_ < steps; ++step_) {
+    if (!all_.loop.Step()) return step_;
+    Check();
+  }
+  CheckCharges();
+  return steps;
+}
+
+void Simulation::Check() {
+  const RunState& run = all_.run;
+  if (!run.report.error.empty()) Broken("the run has failed: %s", run.report.error.c_str());
+  for (const std::string& warning : run.report.warnings) {
+    const bool is_right =
+        rules_.has_kernel_waits && warning.find("blocked in") != std::string::npos;
+    if (!is_right) Broken("a warning: %s", warning.c_str());
+  }
+  if (run.root.drift() > run.scenario.drift_bound)
+    Broken("the leaves are %ld ns apart, of %ld", run.root.drift().ns(),
+           run.scenario.drift_bound.ns());
+}
+
+// What programs are charged is what they have computed, whatever the host did meanwhile.
+void Simulation::CheckCharges() {
+  if (is_fixed_) return;
+  constexpr std::int64_t kSlackNs = 100 * kUs;
+  for (std::size_t i = 0; i < tasks_.size(); ++i) {
+    const std::int64_t computed_ns = kernel_.threads()[i].program_ns;
+    const std::int64_t charged_ns = tasks_[i]->charged.ns();
+    if (std::abs(charged_ns - computed_ns) > computed_ns / 100 + kSlackNs)
+      Broken("thread %zu has computed for %ld ns, and was charged %ld", i, computed_ns, charged_ns);
+  }
+}
+
+void Simulation::Trace() const {
+  for (std::size_t i = 0; i < tasks_.size(); ++i) {
+    const SimThread& thread = kernel_.threads()[i];
+    fprintf(stderr, "%s of %s: %zu acts, at %ld; computed %ld of %ld, charged %ld, debt %ld\n",
+            std::to_string(tasks_[i]->tid).c_str(), tasks_[i]->process->name.c_str(),
+            programs_[i].shown().size(), tasks_[i]->reached.ns(), thread.program_ns, thread.cpu_ns,
+            tasks_[i]->charged.ns(), tasks_[i]->debt.ns());
+  }
+}
+
+std::vector<std::vector<std::int64_t>> Simulation::Shown() const {
+  std::vector<std::vector<std::int64_t>> shown;
+  for (const SimProgram& program : programs_) shown.push_back(program.shown());
+  return shown;
+}
+
+}  // namespace tcs::simulate

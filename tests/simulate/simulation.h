@@ -1,0 +1,53 @@
+// One run of the real coordinator's engine on a simulated host: robots, programs and their course
+// follow from the script's seed, and what the host does meanwhile from its own.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "coordinator/engine/wiring.h"
+#include "tests/simulate/kernel.h"
+#include "tests/simulate/program.h"
+
+namespace tcs::simulate {
+
+struct SimulationSeeds {
+  std::uint64_t script = 1, host = 1;
+};
+
+class Simulation {
+ public:
+  Simulation(const SimulationSeeds& seeds, bool has_levels, bool is_fixed);
+
+  // So many steps of the coordinator, or to the run's end. How many it took.
+  int Run(int steps);
+
+  // What each thread's clock showed after each thing that it did, one thread after the other.
+  std::vector<std::vector<std::int64_t>> Shown() const;
+  const RunState& run() const { return all_.run; }
+  // What has become of each thread, on stderr.
+  void Trace() const;
+
+ private:
+  static Scenario ScenarioOf(Luck& luck);
+  void AddPrograms(Luck& luck);
+  void AddThread(Process& process, pid_t tid, bool is_first, Luck& luck,
+                 std::deque<SimLock>& locks);
+  void Check();
+  void CheckCharges();
+
+  const bool is_fixed_;
+  int step_ = 0;
+  Luck script_;
+  Kernel kernel_;
+  Wiring all_;
+  ProgramRules rules_;
+  std::deque<SimProcess> processes_;
+  std::deque<std::deque<SimLock>> locks_;
+  std::deque<SimProgram> programs_;
+  std::vector<Task*> tasks_;
+};
+
+}  // namespace tcs::simulate
