@@ -180,7 +180,7 @@ void Keep(int fd, int& kept, const MoreDescriptors& more) {
 
 }  // namespace
 
-void Attach(GuestThread& thread) {
+void Attach(GuestThread& thread, unsigned long blocked) {
   // What it has inherited, or an earlier attach has left, is this process's own only if one of its
   // threads has a place already.
   const bool is_first = g_process->mode != ProcessState::kAttached;
@@ -203,6 +203,7 @@ void Attach(GuestThread& thread) {
   thread.index = received.reply.slot;
   thread.pid = received.pid;
   thread.tid = received.tid;
+  thread.slot->blocked_signals = blocked;
   AllowPreemption();
   thread.slot->spin.can_be_asked = OwnSignals() != 0 ? 1 : 0;
   if (is_first && g_header->has_porters != 0) MakePorter();

@@ -10,6 +10,7 @@
 #include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/vdso.h"
+#include "libtcs_preload/without_handlers.h"
 
 namespace tcs::preload {
 
@@ -50,9 +51,10 @@ GuestThread* CurrentSlow() {
     return nullptr;
   }
   if (g_process->mode == ProcessState::kFresh) ForgetSharers();
+  const WithoutHandlers none;
   thread = GuestThread{};
   thread.attaching = true;
-  Attach(thread);
+  Attach(thread, none.before());
   thread.attaching = false;
   g_process->mode = ProcessState::kAttached;
   SeedProcess(*thread.slot);

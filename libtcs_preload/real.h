@@ -8,11 +8,19 @@
 
 namespace tcs::preload {
 
+#ifdef TCS_SIMULATED_HOST
+void* SimulatedReal(const char* name);
+#endif
+
 template <class F>
 F* LookUpReal(F*& cache, const char* name) {
   F* found = __atomic_load_n(&cache, __ATOMIC_RELAXED);
   if (found == nullptr) {
+#ifdef TCS_SIMULATED_HOST
+    found = reinterpret_cast<F*>(SimulatedReal(name));
+#else
     found = reinterpret_cast<F*>(dlsym(RTLD_NEXT, name));
+#endif
     __atomic_store_n(&cache, found, __ATOMIC_RELAXED);
   }
   return found;

@@ -36,8 +36,10 @@ Reactor::Found NotificationReceiver::Arrived(Task& task, Moment moment) {
     task.trap_id = 0;
     task.notified_early = true;
   } else if (SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
-    // The kernel let it run a handler before its turn, which is to answer what it said before.
+    // The kernel let it run a handler before its turn, which is to answer what it said before. When
+    // it says so depends on the host, and is no concern of whoever has a turn.
     SlotOf(task).note.kind = shm::NotificationKind::kResumed;
+    return {};
   }
   return kConcernsAll;
 }

@@ -77,6 +77,7 @@ long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
   Kernel& kernel = Kernel::This();
   kernel.Compute(kCallNs, false);
   SimThread& thread = *kernel.running();
+  kernel.Note(thread, "makes the system call", number);
   if (f != static_cast<long>(shm::kOwnCallMark)) return kernel.Trap(number, {a, b, c, d, e, f});
   switch (number) {
     case SYS_clock_gettime:
@@ -96,8 +97,21 @@ long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
     case SYS_rt_sigprocmask:
       return ChangeMask(thread, a, b, c);
     case SYS_rt_sigaction:
-      if (c != 0) memset(reinterpret_cast<void*>(c), 0, 4 * sizeof(long));
-      if (b != 0) kernel.SetHandler(At<const unsigned long>(b));
+      if (c != 0) {
+        memset(reinterpret_cast<void*>(c), 0, 4 * sizeof(long));
+        At<unsigned long>(c) = kernel.HandlerOf(static_cast<int>(a));
+      }
+      if (b != 0) kernel.SetHandler(static_cast<int>(a), At<const unsigned long>(b));
+      return 0;
+    case SYS_getpid:
+      return thread.process.pid;
+    case SYS_tgkill:
+      kernel.Send(*kernel.Find(static_cast<pid_t>(b)), static_cast<int>(c));
+      kernel.Returns();
+      return 0;
+    case SYS_kill:
+      kernel.SendToProcess(kernel.Find(static_cast<pid_t>(a))->process, static_cast<int>(b));
+      kernel.Returns();
       return 0;
     case SYS_ppoll:
       return 0;
@@ -109,6 +123,25 @@ long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
 
 void DieWithoutCoordinator(const char*) {
   TCS_CHECK(!"a program ends for its coordinator is gone");
+}
+
+// The C library's sigaction; the shim calls no other function of that library's here. Both have the
+// handler first.
+void* SimulatedReal(const char* name) {
+  TCS_CHECK(strcmp(name, "sigaction") == 0);
+  static const auto set = [](int signal, const struct sigaction* action, struct sigaction* before) {
+    Kernel& kernel = Kernel::This();
+    if (before != nullptr) {
+      *before = {};
+      before->sa_sigaction =
+          reinterpret_cast<void (*)(int, siginfo_t*, void*)>(kernel.HandlerOf(signal));
+    }
+    if (action != nullptr)
+      kernel.SetHandler(signal, reinterpret_cast<unsigned long>(action->sa_sigaction));
+    return 0;
+  };
+  int (*const function)(int, const struct sigaction*, struct sigaction*) = set;
+  return reinterpret_cast<void*>(function);
 }
 
 // Parts of the shim that a simulated program has no use for.

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <signal.h>
+#include <stdio.h>
 #include <ucontext.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 
 #include "shm/check.h"
 #include "shm/layout.h"
+#include "tests/simulate/broken.h"
 
 namespace tcs::simulate {
 
@@ -18,6 +20,25 @@ namespace {
 constexpr std::int64_t kUs = 1'000, kMs = 1'000'000;
 
 constexpr std::uint64_t BitOf(int signal) { return std::uint64_t{1} << (signal - 1); }
+
+// The instruction at which the kernel has a thread make its call again.
+constexpr unsigned char kSyscall[] = {0x0f, 0x05};
+
+ucontext_t AtCall(const TrappedCall& call) {
+  ucontext_t context{};
+  greg_t* const registers = context.uc_mcontext.gregs;
+  registers[REG_RIP] = reinterpret_cast<greg_t>(kSyscall);
+  registers[REG_RCX] = registers[REG_RIP] + static_cast<greg_t>(sizeof kSyscall);
+  registers[REG_RAX] = call.number;
+  registers[REG_RSI] = static_cast<greg_t>(call.args[1]);
+  registers[REG_R10] = static_cast<greg_t>(call.args[3]);
+  registers[REG_R9] = static_cast<greg_t>(call.args[5]);
+  return context;
+}
+
+bool IsToBeMadeAgain(const ucontext_t& context) {
+  return context.uc_mcontext.gregs[REG_RIP] == reinterpret_cast<greg_t>(kSyscall);
+}
 
 }  // namespace
 
@@ -40,6 +61,7 @@ Kernel& Kernel::This() {
 SimThread& Kernel::AddThread(SimProcess& process, pid_t tid, std::function<void()> body) {
   SimThread& thread = threads_.emplace_back(tid, process, std::move(body));
   thread.level = static_cast<int>(Level::kWaiting);
+  thread.ready_since = ++queued_;
   return thread;
 }
 
@@ -60,6 +82,13 @@ std::vector<pid_t> Kernel::ThreadsOf(pid_t pid) const {
 // Of a timer.
 std::int64_t Kernel::Lateness() {
   return luck_.OnceIn(20) ? luck_.Long(kUs, 200 * kUs) : luck_.Between(500, 3'000);
+}
+
+void Kernel::Note(const SimThread& thread, const char* what, std::int64_t value) const {
+  if (!traces_) return;
+  fprintf(stderr, "%11.3f us  %d (level %d, computed %ld) %s %ld\n",
+          static_cast<double>(now_ns_) / 1e3, thread.tid, thread.level, thread.program_ns, what,
+          value);
 }
 
 void Kernel::Spend(std::int64_t ns) {
@@ -93,30 +122,43 @@ void Kernel::WakeDue() {
 
 void Kernel::Wake(SimThread& thread, long result) {
   thread.state = SimThread::State::kRuns;
+  thread.ready_since = ++queued_;
+  thread.is_interrupted = false;
   thread.result = result;
   thread.word = nullptr;
   thread.wakes_at_ns = INT64_MAX;
 }
 
-// Who has the processor while the coordinator does not want it.
+// Who has the processor while the coordinator does not want it: of the highest level who has been
+// ready for longest (SCHED_FIFO), or anybody.
 SimThread* Kernel::Next() {
   SimThread* next = nullptr;
   std::uint64_t rivals = 0;
   for (SimThread& thread : threads_) {
     if (thread.state != SimThread::State::kRuns) continue;
-    const int level = has_levels_ ? thread.level : 0;
-    if (next != nullptr && level < next->level && has_levels_) continue;
-    const bool is_above = next == nullptr || (has_levels_ && level > next->level);
-    rivals = is_above ? 1 : rivals + 1;
-    if (is_above || luck_.OnceIn(rivals)) next = &thread;
+    const bool is_before =
+        next == nullptr ||
+        (has_levels_ ? thread.level > next->level ||
+                           (thread.level == next->level && thread.ready_since < next->ready_since)
+                     : luck_.OnceIn(rivals + 1));
+    ++rivals;
+    if (is_before) next = &thread;
   }
   return next;
+}
+
+// It comes to the end of its new level's queue, or to the beginning if that is lower (sched(7)).
+void Kernel::SetLevel(SimThread& thread, int level) {
+  if (level == thread.level) return;
+  thread.ready_since = level < thread.level ? -++queued_ : ++queued_;
+  thread.level = level;
 }
 
 void Kernel::Run(SimThread& thread, std::int64_t until_ns) {
   TCS_CHECK(running_ == nullptr);
   running_ = &thread;
   until_ns_ = until_ns;
+  Note(thread, "has the processor for", until_ns - now_ns_);
   std::swap(preload::t_thread, thread.guest);
   preload::g_process = &thread.process.state;
   preload::g_notify_fd = thread.process.notify_fd;
@@ -126,9 +168,8 @@ void Kernel::Run(SimThread& thread, std::int64_t until_ns) {
 }
 
 void Kernel::Stop() {
-  SimThread& thread = *running_;
-  thread.fiber.Leave();
-  Deliver(thread);
+  Note(*running_, "stops, in state", static_cast<int>(running_->state));
+  running_->fiber.Leave();
 }
 
 void Kernel::Sleep(const std::function<bool()>& has_events, std::int64_t timeout_ns) {
@@ -183,14 +224,17 @@ void Kernel::Compute(std::int64_t ns, bool of_program) {
       thread.program_ns += step_ns;
     }
     ns -= step_ns;
-    if (ns > 0) Stop();
+    if (ns > 0) {
+      Stop();
+      Deliver(thread);
+    }
   }
-  Deliver(thread);
 }
 
 void Kernel::Notified() {
   has_said_ = true;
   if (has_levels_) Stop();
+  Deliver(*running_);
 }
 
 long Kernel::WaitAt(const std::atomic<std::uint32_t>& word, std::uint32_t value,
@@ -198,30 +242,44 @@ long Kernel::WaitAt(const std::atomic<std::uint32_t>& word, std::uint32_t value,
   if (word.load() != value) return -EAGAIN;
   if (luck_.OnceIn(1'000)) return 0;  // for nothing
   SimThread& thread = *running_;
-  if (thread.preemption.has_value() &&
-      (thread.blocked_signals & BitOf(shm::kPreemptionSignal)) == 0)
-    return -EINTR;
-  thread.state = SimThread::State::kAtWord;
-  thread.word = &word;
-  thread.wakes_at_ns = now_ns_ + timeout_ns;
-  Stop();
-  return thread.result;
+  if (Deliverable(thread) == 0) {
+    thread.state = SimThread::State::kAtWord;
+    thread.word = &word;
+    thread.wakes_at_ns = now_ns_ + timeout_ns;
+    Stop();
+  } else {
+    thread.result = -EINTR;
+  }
+  const long result = thread.result;
+  Deliver(thread);
+  return result;
 }
 
 long Kernel::Trap(long number, const long (&args)[6]) {
   SimThread& thread = *running_;
-  thread.call = TrappedCall{.listener = thread.process.trap_listener,
-                            .id = ++last_call_,
-                            .tid = thread.tid,
-                            .number = static_cast<int>(number)};
-  std::copy(std::begin(args), std::end(args), std::begin(thread.call.args));
-  thread.call_is_taken = false;
-  thread.state = SimThread::State::kInTrap;
-  const std::uint64_t one = 1;
-  TCS_CHECK(write(thread.process.trap_listener, &one, sizeof one) == sizeof one);
-  has_said_ = true;
-  Stop();
-  return thread.result;
+  for (;;) {
+    thread.call = TrappedCall{.listener = thread.process.trap_listener,
+                              .id = ++last_call_,
+                              .tid = thread.tid,
+                              .number = static_cast<int>(number)};
+    std::copy(std::begin(args), std::end(args), std::begin(thread.call.args));
+    thread.call_is_taken = false;
+    thread.state = SimThread::State::kInTrap;
+    const std::uint64_t one = 1;
+    TCS_CHECK(write(thread.process.trap_listener, &one, sizeof one) == sizeof one);
+    Note(thread, "makes the call", number);
+    has_said_ = true;
+    if (Deliverable(thread) != 0) Interrupt(thread);
+    Stop();
+    if (!thread.is_interrupted) {
+      const long result = thread.result;
+      Deliver(thread);
+      return result;
+    }
+    ucontext_t call = AtCall(thread.call);
+    Deliver(thread, &call);
+    if (!IsToBeMadeAgain(call)) return static_cast<long>(call.uc_mcontext.gregs[REG_RAX]);
+  }
 }
 
 void Kernel::BlockFor(std::int64_t ns) {
@@ -229,6 +287,7 @@ void Kernel::BlockFor(std::int64_t ns) {
   thread.state = SimThread::State::kInKernel;
   thread.wakes_at_ns = now_ns_ + ns;
   Stop();
+  Deliver(thread);
 }
 
 void Kernel::SetBlocked(std::uint64_t signals) {
@@ -236,22 +295,59 @@ void Kernel::SetBlocked(std::uint64_t signals) {
   Deliver(*running_);
 }
 
-// As the kernel does before a thread goes back to its program.
-void Kernel::Deliver(SimThread& thread) {
-  if (!thread.preemption.has_value() ||
-      (thread.blocked_signals & BitOf(shm::kPreemptionSignal)) != 0)
-    return;
-  siginfo_t info{};
-  info.si_signo = shm::kPreemptionSignal;
-  info.si_code = SI_QUEUE;
-  info.si_value.sival_ptr =
-      reinterpret_cast<void*>(*std::exchange(thread.preemption, std::nullopt));
-  ucontext_t context{};
-  const std::uint64_t before = std::exchange(thread.blocked_signals, ~std::uint64_t{0});
-  __builtin_memcpy(&context.uc_sigmask, &before, sizeof before);
-  reinterpret_cast<void (*)(int, siginfo_t*, void*)>(handler_)(shm::kPreemptionSignal, &info,
-                                                               &context);
-  thread.blocked_signals = before;
+void Kernel::SetHandler(int signal, unsigned long handler) {
+  handlers_[static_cast<std::size_t>(signal)] = handler;
+}
+
+std::uint64_t Kernel::Caught() const {
+  std::uint64_t caught = 0;
+  for (int signal = 1; signal < static_cast<int>(handlers_.size()); ++signal) {
+    if (HandlerOf(signal) != 0) caught |= BitOf(signal);
+  }
+  return caught;
+}
+
+std::uint64_t Kernel::Deliverable(const SimThread& thread) const {
+  return (thread.pending | thread.process.pending) & ~thread.blocked_signals;
+}
+
+// As the kernel does it. Frames are built from the lowest signal on, so the highest one's handler
+// runs first; and it is the lowest one's that finds the interrupted call.
+void Kernel::Deliver(SimThread& thread, ucontext_t* call) {
+  while (const std::uint64_t now = Deliverable(thread)) {
+    thread.pending &= ~now;
+    thread.process.pending &= ~now;
+    const std::uint64_t before = thread.blocked_signals;
+    for (int signal = 64; signal > 0; --signal) {
+      if ((now & BitOf(signal)) == 0) continue;
+      const std::uint64_t lower = now & (BitOf(signal) - 1), saved = before | lower;
+      siginfo_t info{};
+      info.si_signo = signal;
+      const bool is_ours = signal == shm::kPreemptionSignal;
+      info.si_code = is_ours ? SI_QUEUE : SI_TKILL;
+      info.si_value.sival_ptr = reinterpret_cast<void*>(
+          is_ours ? thread.dispatch : static_cast<std::uint64_t>(thread.sent_ns));
+      ucontext_t context{};
+      if (call != nullptr && lower == 0) context = *call;
+      __builtin_memcpy(&context.uc_sigmask, &saved, sizeof saved);
+      Note(thread, "begins the handler of signal", signal);
+      thread.blocked_signals = is_ours ? ~std::uint64_t{0} : saved | BitOf(signal);
+      reinterpret_cast<void (*)(int, siginfo_t*, void*)>(HandlerOf(signal))(signal, &info,
+                                                                            &context);
+      if (call != nullptr && lower == 0) *std::exchange(call, nullptr) = context;
+    }
+    thread.blocked_signals = before;
+  }
+}
+
+// Its wait ends, as a signal is there for it.
+void Kernel::Interrupt(SimThread& thread) {
+  if (thread.state == SimThread::State::kInTrap && !thread.call_is_taken) {
+    std::uint64_t one;
+    TCS_CHECK(read(thread.call.listener, &one, sizeof one) == sizeof one);
+  }
+  Wake(thread, -EINTR);
+  thread.is_interrupted = true;
 }
 
 void Kernel::WakeAt(const std::atomic<std::uint32_t>& word) {
@@ -265,9 +361,34 @@ void Kernel::WakeAt(const std::atomic<std::uint32_t>& word) {
 void Kernel::SendToGate(pid_t tid, std::uint64_t dispatch) {
   SimThread* const thread = Find(tid);
   if (thread == nullptr) return;
-  thread->preemption = dispatch;
-  const bool reaches = (thread->blocked_signals & BitOf(shm::kPreemptionSignal)) == 0;
-  if (reaches && thread->state == SimThread::State::kAtWord) Wake(*thread, -EINTR);
+  thread->dispatch = dispatch;
+  Send(*thread, shm::kPreemptionSignal);
+}
+
+// Without levels the kernel keeps signals from threads whose calls have been received
+// (coordinator/os/trap.cc).
+void Kernel::Send(SimThread& thread, int signal) {
+  if (running_ != nullptr && (thread.pending & BitOf(signal)) == 0)
+    thread.sent_ns = running_->sends_ns;
+  thread.pending |= BitOf(signal);
+  Note(thread, "is sent signal", signal);
+  if ((thread.blocked_signals & BitOf(signal)) == 0) InterruptWait(thread);
+}
+
+void Kernel::InterruptWait(SimThread& thread) {
+  const bool waits =
+      thread.state == SimThread::State::kAtWord ||
+      (thread.state == SimThread::State::kInTrap && (has_levels_ || !thread.call_is_taken));
+  if (waits) Interrupt(thread);
+}
+
+// The first thread that does not block it is to take it; so may any other that comes before.
+void Kernel::SendToProcess(SimProcess& process, int signal) {
+  process.pending |= BitOf(signal);
+  for (SimThread& thread : threads_) {
+    if (&thread.process != &process || (thread.blocked_signals & BitOf(signal)) != 0) continue;
+    return InterruptWait(thread);
+  }
 }
 
 std::optional<TrappedCall> Kernel::ReceiveTrapped(int listener) {
@@ -293,6 +414,12 @@ bool Kernel::Answer(std::uint64_t id, long result) {
   for (SimThread& thread : threads_) {
     if (thread.state != SimThread::State::kInTrap || thread.call.id != id) continue;
     Wake(thread, result);
+    Note(thread, "has the answer", result);
+    if (EndsBySignal(result)) {
+      if (Deliverable(thread) == 0)
+        Broken("a call is to return %ld, though no signal is there for its thread", result);
+      thread.is_interrupted = true;
+    }
     return true;
   }
   return false;

@@ -15,7 +15,9 @@
 #pragma once
 
 #include <sys/types.h>
+#include <ucontext.h>
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <deque>
@@ -33,11 +35,14 @@
 
 namespace tcs::simulate {
 
+class SimProgram;
+
 // What threads share.
 struct SimProcess {
   pid_t pid = 0;
-  int notify_fd = -1;      // its end of its pipe; the link's own
-  int trap_listener = -1;  // an eventfd, readable while a call waits there
+  int notify_fd = -1;         // its end of its pipe; the link's own
+  std::uint64_t pending = 0;  // signals for whichever of its threads takes them; bit 0 is signal 1
+  int trap_listener = -1;     // an eventfd, readable while a call waits there
   preload::ProcessState state{preload::ProcessState::kAttached, false, {}, {}, {}};
 };
 
@@ -53,17 +58,22 @@ struct SimThread {
   preload::GuestThread guest;  // while it is not entered
   State state = State::kRuns;
   int level = 0;
+  std::int64_t ready_since = 0;  // its place in its level's queue: the least is the first
   std::int64_t cpu_ns = 0;
   // Of that, what its program has computed, rather than the shim and the kernel for it.
   std::int64_t program_ns = 0;
-  std::uint64_t blocked_signals = 0;
-  std::optional<std::uint64_t> preemption;  // a signal that has come: for that dispatch
+  std::uint64_t blocked_signals = 0, pending = 0;  // bit 0 is signal 1
+  std::uint64_t dispatch = 0;                      // what the signal says that sends it to its gate
   // What it waits for.
   const std::atomic<std::uint32_t>* word = nullptr;
   std::int64_t wakes_at_ns = INT64_MAX;
   TrappedCall call;
   bool call_is_taken = false;
-  long result = 0;  // of its wait
+  bool is_interrupted = false;    // its wait has ended for a signal
+  long result = 0;                // of its wait
+  SimProgram* program = nullptr;  // whose thread it is
+  std::int64_t sends_ns = 0;      // by its clock, when it was about to send its last signal
+  std::int64_t sent_ns = 0;       // that of the sender of the signal that is pending
 };
 
 class Kernel {
@@ -82,13 +92,20 @@ class Kernel {
 
   SimThread& AddThread(SimProcess& process, pid_t tid, std::function<void()> body);
   SimThread* Find(pid_t tid);
+  std::deque<SimThread>& threads() { return threads_; }
   const std::deque<SimThread>& threads() const { return threads_; }
   std::vector<pid_t> ThreadsOf(pid_t pid) const;
   // The CPU clock of a thread is read by a descriptor.
   void OpensClock(int fd, pid_t tid) { clocks_[fd] = tid; }
   SimThread* OfClock(int fd) { return Find(clocks_[fd]); }
+  void SetLevel(SimThread& thread, int level);
   // Null: the coordinator runs.
   SimThread* running() { return running_; }
+
+  // Has each thing that happens written to stderr.
+  void Trace() { traces_ = true; }
+  bool traces() const { return traces_; }
+  void Note(const SimThread& thread, const char* what, std::int64_t value = 0) const;
 
   // The coordinator computes, or has the kernel do something for it. Where there are no levels
   // others may come between.
@@ -110,24 +127,33 @@ class Kernel {
   void BlockFor(std::int64_t ns);
   // It has made something ready that the coordinator waits for.
   void Notified();
-  // Its handler of the signal that sends threads to their gates, and its blocked signals.
-  void SetHandler(unsigned long handler) { handler_ = handler; }
+  // The handler that all threads have for the signal, and what the running one blocks.
+  void SetHandler(int signal, unsigned long handler);
+  unsigned long HandlerOf(int signal) const { return handlers_[static_cast<std::size_t>(signal)]; }
   void SetBlocked(std::uint64_t signals);
 
   void WakeAt(const std::atomic<std::uint32_t>& word);
   void SendToGate(pid_t tid, std::uint64_t dispatch);
+  void Send(SimThread& thread, int signal);
+  // The running thread comes back from a call.
+  void Returns() { Deliver(*running_); }
+  void SendToProcess(SimProcess& process, int signal);
+  // For those of them that have a handler.
+  std::uint64_t Caught() const;
   std::optional<TrappedCall> ReceiveTrapped(int listener);
   bool Answer(std::uint64_t id, long result);
   bool HasAnswerToTake(std::uint64_t id);
 
  private:
-  enum class Why { kSliceEnds, kHasSaid, kWaits };
-
   SimThread* Next();
   void Run(SimThread& thread, std::int64_t until_ns);
   // The running thread stops here, until it has the processor again.
   void Stop();
-  void Deliver(SimThread& thread);
+  std::uint64_t Deliverable(const SimThread& thread) const;
+  // It goes back to its program, which it has left in a system call (`call`) or elsewhere (null).
+  void Deliver(SimThread& thread, ucontext_t* call = nullptr);
+  void Interrupt(SimThread& thread);
+  void InterruptWait(SimThread& thread);
   void Wake(SimThread& thread, long result);
   void WakeDue();
   std::int64_t NextDue() const;
@@ -144,8 +170,10 @@ class Kernel {
   std::int64_t until_ns_ = 0;
   bool has_said_ = false;
   int detector_fd_ = -1;  // armed
-  unsigned long handler_ = 0;
+  std::array<unsigned long, 65> handlers_{};
   std::uint64_t last_call_ = 0;
+  std::int64_t queued_ = 0;
+  bool traces_ = false;
   std::map<int, pid_t> clocks_;
   std::function<void(const SimThread&)> watch_;
 };

@@ -70,7 +70,7 @@ bool SetLevel(pid_t tid, Level level) {
   if (!Kernel::This().has_levels()) return false;
   Kernel::This().Spend(kCallNs);
   if (SimThread* thread = Kernel::This().Find(tid); thread != nullptr)
-    thread->level = static_cast<int>(level);
+    Kernel::This().SetLevel(*thread, static_cast<int>(level));
   return true;
 }
 void RunOnlyWhenIdle(pid_t) {}
@@ -99,7 +99,14 @@ bool IsExiting(pid_t) { return false; }
 bool IsDying(pid_t) { return false; }
 std::optional<int> WaitStatusOf(pid_t) { return std::nullopt; }
 std::optional<int> EndOf(pid_t) { return std::nullopt; }
-SignalSets ReadSignalSets(pid_t) { return {}; }
+SignalSets ReadSignalSets(pid_t tid) {
+  const SimThread* const thread = Find(tid);
+  if (thread == nullptr) return {};
+  return {.caught = Kernel::This().Caught(),
+          .blocked = thread->blocked_signals,
+          .own_pending = thread->pending,
+          .shared_pending = thread->process.pending};
+}
 Credentials ReadCredentials(pid_t) { return {}; }
 std::uint64_t ReadSoftLimit(pid_t, const char*) { return 0; }
 std::string ThreadSystemCall(pid_t) { return "0"; }

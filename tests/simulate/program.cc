@@ -1,6 +1,7 @@
 #include "tests/simulate/program.h"
 
 #include <linux/futex.h>
+#include <signal.h>
 #include <sys/syscall.h>
 
 #include <algorithm>
@@ -9,13 +10,22 @@
 #include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/virtual_clock.h"
+#include "libtcs_preload/without_handlers.h"
 #include "tests/simulate/broken.h"
+
+// The shim's own, under other names than the C library's.
+extern "C" {
+int Simulated_tgkill(pid_t pid, pid_t tid, int signal);
+int Simulated_sigaction(int signal, const struct sigaction* action, struct sigaction* before);
+}
 
 namespace tcs::simulate {
 
 namespace {
 
 constexpr std::int64_t kUs = 1'000, kMs = 1'000'000;
+
+constexpr int kSignal = SIGUSR1;
 
 void Compute(std::int64_t ns) { Kernel::This().Compute(ns, true); }
 
@@ -28,6 +38,7 @@ long Futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value)
 }  // namespace
 
 void SimProgram::Note(std::int64_t now_ns) {
+  Kernel::This().Note(*Kernel::This().running(), "reads its clock:", now_ns);
   if (now_ns < last_ns_) Broken("a clock went back from %ld to %ld", last_ns_, now_ns);
   last_ns_ = now_ns;
 }
@@ -44,7 +55,11 @@ void SimProgram::Sleep() {
   const std::int64_t until_ns = ReadClock() + for_ns;
   {
     preload::Entered guest;
-    if (!preload::SleepUntil(*guest.thread(), until_ns)) Broken("a sleep was ended by a signal");
+    const int handled = handled_;
+    if (!preload::SleepUntil(*guest.thread(), until_ns)) {
+      if (handled == handled_) Broken("a sleep was ended by a signal that nobody has handled");
+      return;
+    }
   }
   const std::int64_t now_ns = ReadClock();
   if (now_ns < until_ns) Broken("a sleep until %ld was over at %ld", until_ns, now_ns);
@@ -54,7 +69,7 @@ void SimProgram::Sleep() {
 
 // Whoever is woken is not earlier than whoever has woken it.
 void SimProgram::AwaitRelease(SimLock& lock) {
-  const std::size_t before = lock.woken_ns.size();
+  const std::size_t before = lock.wakes_done;
   if (Futex(lock.word, FUTEX_WAIT, 2) != 0) return;
   const std::int64_t now_ns = ReadClock();
   const auto since = lock.woken_ns.begin() + static_cast<std::ptrdiff_t>(before);
@@ -85,6 +100,7 @@ void SimProgram::Unlock(SimLock& lock) {
   if (lock.word.exchange(0) != 2) return;
   lock.woken_ns.push_back(lock.released_ns);
   Futex(lock.word, FUTEX_WAKE, 1);
+  ++lock.wakes_done;
 }
 
 void SimProgram::UseLock() {
@@ -95,8 +111,33 @@ void SimProgram::UseLock() {
   Unlock(lock);
 }
 
+// To one thread, or to whichever of a process takes it.
+void SimProgram::SendSignal() {
+  SimThread& to = *others_[static_cast<std::size_t>(
+      luck_.Between(0, static_cast<std::int64_t>(others_.size()) - 1))];
+  Kernel::This().running()->sends_ns = ReadClock();
+  Simulated_tgkill(to.process.pid, to.tid, kSignal);
+}
+
+void SimProgram::OnSignal(int, siginfo_t* info, void*) {
+  const auto sent_ns = reinterpret_cast<std::int64_t>(info->si_value.sival_ptr);
+  SimProgram& program = *Kernel::This().running()->program;
+  ++program.handled_;
+  const std::int64_t now_ns = program.ReadClock();
+  if (now_ns < sent_ns) Broken("a signal that was sent at %ld was handled at %ld", sent_ns, now_ns);
+  Compute(program.luck_.Long(kUs / 5, 100 * kUs));
+  program.ReadClock();
+}
+
+void SimProgram::HandleSignals() {
+  struct sigaction action {};
+  action.sa_sigaction = OnSignal;
+  action.sa_flags = SA_SIGINFO | SA_RESTART;
+  Simulated_sigaction(kSignal, &action, nullptr);
+}
+
 void SimProgram::Act() {
-  switch (luck_.Between(0, rules_.has_kernel_waits ? 12 : 11)) {
+  switch (luck_.Between(0, 12)) {
     case 0:
     case 1:
     case 2:
@@ -109,17 +150,31 @@ void SimProgram::Act() {
     case 7:
     case 8:
       return Sleep();
-    case 12:
-      return Kernel::This().BlockFor(luck_.Long(10 * kUs, 10 * kMs));
+    case 9:
+      if (rules_.has_kernel_waits) Kernel::This().BlockFor(luck_.Long(10 * kUs, 10 * kMs));
+      return;
+    case 10:
+      if (rules_.has_signals) SendSignal();
+      return;
     default:
       ReadClock();
   }
 }
 
-void SimProgram::Run(preload::GuestThread guest) {
+// As libtcs_preload/guest.cc and attach.cc do, but for the connection: its place is there already.
+void SimProgram::Attach(const preload::GuestThread& guest) {
+  const preload::WithoutHandlers none;
   preload::t_thread = guest;
+  preload::t_thread.attaching = true;
+  guest.slot->blocked_signals = none.before();
   preload::AllowPreemption();
   preload::AwaitFirstDispatch(preload::t_thread);
+  preload::t_thread.attaching = false;
+}
+
+void SimProgram::Run(preload::GuestThread guest) {
+  Attach(guest);
+  HandleSignals();
   for (;;) {
     Act();
     shown_.push_back(ReadClock());

@@ -3,6 +3,8 @@
 // as any program's threads are: what they do goes through the shim's own sources.
 #pragma once
 
+#include <signal.h>
+
 #include <cstdint>
 #include <deque>
 #include <string>
@@ -19,12 +21,13 @@ struct SimLock {
   std::atomic<std::uint32_t> word{0};
   std::int64_t released_ns = 0;  // by the clock of whoever released it last
   const void* holder = nullptr;
-  std::vector<std::int64_t> woken_ns;  // when those were woken who slept, likewise
+  std::vector<std::int64_t> woken_ns;  // when those were woken who slept, likewise,
+  std::size_t wakes_done = 0;          // and how many of these calls are over
 };
 
 // What may be done, and what must hold besides.
 struct ProgramRules {
-  bool has_kernel_waits = false;
+  bool has_kernel_waits = false, has_signals = false;
   // Each thread of its robot has a core for itself: nobody waits for one.
   bool has_own_core = false;
   std::int64_t drift_bound_ns = 0;
@@ -38,6 +41,8 @@ class SimProgram {
   SimProgram(std::uint64_t seed, const ProgramRules& rules, std::deque<SimLock>& locks)
       : luck_(seed), rules_(rules), locks_(locks) {}
 
+  // Those that it sends signals to: of all processes, itself too.
+  void Knows(std::vector<SimThread*> others) { others_ = std::move(others); }
   // The thread's body.
   [[noreturn]] void Run(preload::GuestThread guest);
 
@@ -45,12 +50,16 @@ class SimProgram {
   const std::vector<std::int64_t>& shown() const { return shown_; }
 
  private:
+  static void Attach(const preload::GuestThread& guest);
   std::int64_t ReadClock();
   void Sleep();
   void AwaitRelease(SimLock& lock);
   void Lock(SimLock& lock);
   void Unlock(SimLock& lock);
   void UseLock();
+  void SendSignal();
+  static void OnSignal(int signal, siginfo_t* info, void* context);
+  static void HandleSignals();
   void Act();
   void Note(std::int64_t now_ns);
 
@@ -58,6 +67,8 @@ class SimProgram {
   const ProgramRules rules_;
   std::deque<SimLock>& locks_;
   std::vector<std::int64_t> shown_;
+  std::vector<SimThread*> others_;
+  int handled_ = 0;  // signals
   std::int64_t last_ns_ = 0;
 };
 

@@ -27,6 +27,7 @@ class Simulation {
   // What each thread's clock showed after each thing that it did, one thread after the other.
   std::vector<std::vector<std::int64_t>> Shown() const;
   const RunState& run() const { return all_.run; }
+  void TraceAll() { kernel_.Trace(); }
   // What has become of each thread, on stderr.
   void Trace() const;
 
@@ -37,6 +38,7 @@ class Simulation {
                  std::deque<SimLock>& locks);
   void Check();
   void CheckCharges();
+  void TraceStep();
 
   const bool is_fixed_;
   int step_ = 0;
@@ -48,6 +50,7 @@ class Simulation {
   std::deque<std::deque<SimLock>> locks_;
   std::deque<SimProgram> programs_;
   std::vector<Task*> tasks_;
+  std::vector<std::int64_t> charged_;
 };
 
 }  // namespace tcs::simulate
