@@ -244,6 +244,9 @@ Ended EndWait(GuestThread& thread) {
   // The handler may have begun before the thread's turn. If that begins after this look, the
   // coordinator makes nothing of what it is told.
   if (!ShutGate(slot)) return Ended::kByOther;
+  const NotificationKind kind = slot.note.kind;
+  if (kind != NotificationKind::kInterrupted && kind != NotificationKind::kResumed)
+    slot.interrupted = slot.note;
   const Charged charged =
       FillRecord(slot, Request{.kind = NotificationKind::kInterrupted}, reading);
   Notify(thread, reading);

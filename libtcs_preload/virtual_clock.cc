@@ -104,12 +104,26 @@ std::int64_t DeadlineAfter(GuestThread& thread, std::int64_t timeout_ns) {
   return timeout_ns < 0 ? shm::kNeverNs : AddSaturated(NowNs(thread), timeout_ns);
 }
 
+namespace {
+
+// The thread holds. False if a handler has run meanwhile, and its time is another one now.
+bool Hold(GuestThread& thread, NotificationKind for_what) {
+  const std::uint32_t handlers = thread.handlers;
+  Exchange(thread, Request{.kind = for_what});
+  return thread.handlers == handlers || IsShutDown();
+}
+
+}  // namespace
+
 void HoldForRead(GuestThread& thread) {
-  const std::int64_t now = NowNs(thread);
+  std::int64_t now = NowNs(thread);
   ClockPage& page = thread.slot->clock;
   if (now <= page.read_safe_ns) return;
   if (g_header->sync == shm::Sync::kConsistent) {
-    Exchange(thread, Request{.kind = NotificationKind::kRead});
+    while (!Hold(thread, NotificationKind::kRead)) {
+      now = NowNs(thread);
+      if (now <= page.read_safe_ns) return;
+    }
     if (now <= page.read_safe_ns || IsShutDown()) return;
   }
   // What is read now is older than the read by this much.
@@ -127,7 +141,9 @@ bool BeginWrite(GuestThread& thread) {
 }
 
 void HoldForWrite(GuestThread& thread) {
-  if (!BeginWrite(thread)) Exchange(thread, Request{.kind = NotificationKind::kWrite});
+  while (!BeginWrite(thread)) {
+    if (Hold(thread, NotificationKind::kWrite)) return;
+  }
 }
 
 }  // namespace tcs::preload

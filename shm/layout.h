@@ -37,7 +37,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 30;
+inline constexpr std::uint32_t kVersion = 31;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -387,8 +387,11 @@ struct alignas(64) ThreadSlot {
   // clock. kNeverNs where nobody else computes whom it could wait for.
   std::int64_t spin_until_ns;
   alignas(64) Postbox postbox;
+  // Written by the thread when a handler comes before its note is answered, and `note` says so
+  // (kInterrupted): that note. Nobody may have read it yet.
+  Notification interrupted;
 };
-static_assert(sizeof(ThreadSlot) == 5376);
+static_assert(sizeof(ThreadSlot) == 5696);
 static_assert(offsetof(ThreadSlot, datagrams) == 1216);
 static_assert(offsetof(ThreadSlot, announces) == 3272);
 static_assert(offsetof(ThreadSlot, descriptors_changed) == 3276);

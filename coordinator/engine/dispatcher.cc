@@ -216,8 +216,7 @@ bool Dispatcher::AnswerEarly(Task& task) {
   if (std::exchange(task.notified_early, false)) {
     task.reply[0] = task.reply[1] = 0;
     if (!all_.settler.TakeNotesOf(task)) return true;
-    const shm::Notification early = SlotOf(task).note;
-    finds_more = all_.notifications.Handle(task, early);
+    finds_more = all_.notification_receiver.Handle(task);
   } else {
     const TrappedCall early = *task.early_trap;
     task.early_trap.reset();
@@ -304,8 +303,7 @@ void Dispatcher::Answer(Task& task) {
   bool finds_more = false;
   if (run_.turn.notified) {
     task.reply[0] = task.reply[1] = 0;
-    const shm::Notification note = SlotOf(task).note;
-    finds_more = all_.notifications.Handle(task, note);
+    finds_more = all_.notification_receiver.Handle(task);
   } else {
     finds_more = all_.trapped.Handle(task, *run_.turn.trapped);
   }
@@ -315,6 +313,7 @@ void Dispatcher::Answer(Task& task) {
 
 void Dispatcher::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until) {
   all_.trap_receiver.TakeAgainIfUnmarked(task);
+  all_.notification_receiver.TakeAgainIfUnmarked(task);
   if (AnswerEarly(task)) return;
   if (all_.kept_calls.WaitsAgain(task)) {
     all_.event_pump.Poll(EventPump::kNoWait, {task.reached});

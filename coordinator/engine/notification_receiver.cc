@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include "coordinator/engine/wiring.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/cpu_clock.h"
+#include "coordinator/tasks/signal_sets.h"
 #include "shm/attach_protocol.h"
 
 namespace tcs {
@@ -18,15 +20,13 @@ Reactor::Found NotificationReceiver::Arrived(Task& task, Moment moment) {
     run_.turn.notified = true;
   } else if (task.state == TaskState::kWaiting &&
              SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
-    all_.waker.Wake(task, shm::WakeReason::kSignal, moment);
-    task.reply[0] = 1;
+    HandlerCame(task, moment);
   } else if (task.state == TaskState::kUnseen) {
     all_.unseen_threads.ComeBack(task, moment);
     task.parked = true;
     all_.host_cpu.Check(task, CpuClockOf(task));
-    const shm::Notification note = SlotOf(task).note;
     Reactor::Found found = kConcernsAll;
-    found.looks_again = all_.notifications.Handle(task, note);
+    found.looks_again = Handle(task);
     return found;
   } else if (!task.parked || task.trap_id != 0) {
     // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
@@ -38,10 +38,46 @@ Reactor::Found NotificationReceiver::Arrived(Task& task, Moment moment) {
   } else if (SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
     // The kernel let it run a handler before its turn, which is to answer what it said before. When
     // it says so depends on the host, and is no concern of whoever has a turn.
-    SlotOf(task).note.kind = shm::NotificationKind::kResumed;
+    HandlerCame(task, moment);
     return {};
   }
   return kConcernsAll;
+}
+
+// A handler has interrupted what the thread said, and is to run at its next turn.
+void NotificationReceiver::HandlerCame(Task& task, Moment moment) {
+  if (task.state != TaskState::kWaiting) {
+    SlotOf(task).note.kind = shm::NotificationKind::kResumed;
+    return;
+  }
+  all_.waker.Wake(task, shm::WakeReason::kSignal, moment);
+  task.reply[0] = 1;
+}
+
+bool NotificationReceiver::Handle(Task& task) {
+  const shm::ThreadSlot& slot = SlotOf(task);
+  const shm::Notification said = slot.note;
+  if (said.kind != shm::NotificationKind::kInterrupted)
+    return all_.notifications.Handle(task, said);
+  const shm::Notification interrupted = slot.interrupted;
+  const bool finds_more = all_.notifications.Handle(task, interrupted);
+  if (!task.process->expelled) HandlerCame(task, {task.reached});
+  return finds_more;
+}
+
+// As TrapReceiver does it with calls: another thread of its process has taken the signal that ended
+// the wait, and the kernel has made this one wait on. One that has begun to handle it says so.
+void NotificationReceiver::TakeAgainIfUnmarked(Task& task) {
+  const bool was_ended = task.parked && task.trap_id == 0 && task.slot >= 0 &&
+                         task.reason == shm::WakeReason::kSignal && !task.notified_early;
+  if (!was_ended) return;
+  const SignalSets sets = SignalsOf(run_, task);
+  const bool is_there = (sets.own_pending | sets.shared_pending) != 0;
+  if (is_there || (run_.gates_only && IsMarkedForSignal(task.tid))) return;
+  const shm::NotificationKind kind = SlotOf(task).note.kind;
+  const bool is_handled =
+      kind == shm::NotificationKind::kInterrupted || kind == shm::NotificationKind::kResumed;
+  task.notified_early = !is_handled;
 }
 
 bool NotificationReceiver::PutOff(Task& task) {

@@ -14,8 +14,16 @@ class NotificationReceiver : public EnginePart {
 
   // Of one process, so many at a time: others have their turns, too.
   Reactor::Found Take(const Process& process, Moment moment);
+  // What the thread has said last is answered, at its own time. True if there may be more by now
+  // that belongs to this moment. If a handler has come meanwhile, what the handler interrupted is
+  // answered first: nobody may have heard of it yet.
+  bool Handle(Task& task);
+  // The thread is about to have its turn. If a signal was to end its wait, and none is there for
+  // it, it waits on.
+  void TakeAgainIfUnmarked(Task& task);
 
  private:
+  void HandlerCame(Task& task, Moment moment);
   Reactor::Found Arrived(Task& task, Moment moment);
   bool PutOff(Task& task);
 };

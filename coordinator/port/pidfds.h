@@ -6,6 +6,8 @@
 namespace tcs {
 
 int OpenPidfd(pid_t pid);
+// By SIGKILL. What is left of the process then is the kernel's to do.
+void KillByPidfd(int pidfd);
 // A copy of another process's descriptor: pidfd_getfd. -1: errno is set.
 int DuplicateFd(int pidfd, int fd);
 // The errno by which the kernel refuses pidfd_getfd to this process, whoever is asked about, as a

@@ -1,6 +1,7 @@
 #include "coordinator/port/waits.h"
 
 #include <linux/futex.h>
+#include <poll.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
@@ -14,6 +15,12 @@ std::size_t WaitForEvents(int epoll, std::span<epoll_event> events, HostDuration
   const int found = epoll_pwait2(epoll, events.data(), static_cast<int>(events.size()),
                                  timeout < HostDuration() ? nullptr : &at_most, nullptr);
   return found < 0 ? 0 : static_cast<std::size_t>(found);
+}
+
+void AwaitReadable(int fd, HostDuration at_most) {
+  pollfd one{fd, POLLIN, 0};
+  const timespec time = shm::ToTimespec(at_most.ns());
+  ppoll(&one, 1, &time, nullptr);
 }
 
 void Pause(HostDuration duration) {

@@ -15,6 +15,9 @@ namespace tcs {
 // limit). How many there are. While it waits the programs' threads have the processor.
 std::size_t WaitForEvents(int epoll, std::span<epoll_event> events, HostDuration timeout);
 
+// Until there is something to read, or at most so long.
+void AwaitReadable(int fd, HostDuration at_most);
+
 // Sleeps for so long, whatever comes meanwhile.
 void Pause(HostDuration duration);
 

@@ -1,19 +1,18 @@
 #include "coordinator/processes/expulsion.h"
 
 #include <fmt/format.h>
-#include <poll.h>
-#include <signal.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <utility>
 #include <vector>
+
+#include "coordinator/port/pidfds.h"
+#include "coordinator/port/waits.h"
 
 namespace tcs {
 
 namespace {
 
-constexpr int kDeathMs = 1000;
+constexpr HostDuration kMostDeath = HostDuration::Seconds(1);
 
 }  // namespace
 
@@ -25,7 +24,7 @@ void Expulsion::Expel(Process& process, const char* what) {
         fmt::format("{} (pid {}) has written an impossible value into the memory that it shares "
                     "with tcs ({}), and was ended; look for a stray pointer in it",
                     process.name, process.pid, what));
-  syscall(SYS_pidfd_send_signal, process.pidfd.get(), SIGKILL, nullptr, 0);
+  KillByPidfd(process.pidfd.get());
   cpu_.active().HoldLast();
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
@@ -33,8 +32,7 @@ void Expulsion::Expel(Process& process, const char* what) {
     cpu_.active().LetRun(*task);
     if (!run_.turn.IsOf(*task)) AwaitDeath(*task);
   }
-  pollfd end{process.pidfd.get(), POLLIN, 0};
-  poll(&end, 1, kDeathMs);
+  AwaitReadable(process.pidfd.get(), kMostDeath);
 }
 
 void Expulsion::AwaitDeath(Task& task) {

@@ -27,7 +27,7 @@ namespace tcs::shm {
 std::uint64_t ReadTsc() {
   constexpr std::int64_t kTakesNs = 12;
   simulate::Kernel& kernel = simulate::Kernel::This();
-  kernel.Compute(kTakesNs, false);
+  kernel.ComputeInShim(kTakesNs);
   return kernel.tsc();
 }
 
@@ -75,7 +75,7 @@ int g_porter_fd = -1;
 
 long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
   Kernel& kernel = Kernel::This();
-  kernel.Compute(kCallNs, false);
+  kernel.ComputeInShim(kCallNs);
   SimThread& thread = *kernel.running();
   kernel.Note(thread, "makes the system call", number);
   if (f != static_cast<long>(shm::kOwnCallMark)) return kernel.Trap(number, {a, b, c, d, e, f});
@@ -91,7 +91,7 @@ long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
     }
     case SYS_futex:
       TCS_CHECK(b == FUTEX_WAIT && d != 0);
-      kernel.Compute(kWaitNs, false);
+      kernel.ComputeInShim(kWaitNs);
       return kernel.WaitAt(At<const std::atomic<std::uint32_t>>(a), static_cast<std::uint32_t>(c),
                            shm::ToNs(At<const timespec>(d)));
     case SYS_rt_sigprocmask:

@@ -108,14 +108,17 @@ void Kernel::Spend(std::int64_t ns) {
 std::int64_t Kernel::NextDue() const {
   std::int64_t due_ns = INT64_MAX;
   for (const SimThread& thread : threads_) {
-    if (thread.state != SimThread::State::kRuns) due_ns = std::min(due_ns, thread.wakes_at_ns);
+    if (thread.state != SimThread::State::kRuns && thread.state != SimThread::State::kDead)
+      due_ns = std::min(due_ns, thread.wakes_at_ns);
   }
   return due_ns;
 }
 
 void Kernel::WakeDue() {
   for (SimThread& thread : threads_) {
-    if (thread.state == SimThread::State::kRuns || thread.wakes_at_ns > now_ns_) continue;
+    if (thread.state == SimThread::State::kRuns || thread.state == SimThread::State::kDead ||
+        thread.wakes_at_ns > now_ns_)
+      continue;
     Wake(thread, thread.state == SimThread::State::kAtWord ? -ETIMEDOUT : 0);
   }
 }
@@ -156,6 +159,7 @@ void Kernel::SetLevel(SimThread& thread, int level) {
 
 void Kernel::Run(SimThread& thread, std::int64_t until_ns) {
   TCS_CHECK(running_ == nullptr);
+  if (thread.is_dying) return Die(thread);
   running_ = &thread;
   until_ns_ = until_ns;
   Note(thread, "has the processor for", until_ns - now_ns_);
@@ -165,6 +169,36 @@ void Kernel::Run(SimThread& thread, std::int64_t until_ns) {
   thread.fiber.Enter();
   std::swap(preload::t_thread, thread.guest);
   running_ = nullptr;
+}
+
+void Kernel::Die(SimThread& thread) {
+  now_ns_ += luck_.Between(10 * kUs, 60 * kUs);
+  thread.state = SimThread::State::kDead;
+  Note(thread, "is dead");
+  has_said_ = true;
+  if (!HasEnded(thread.process.pid)) return;
+  const std::uint64_t one = 1;
+  for (const auto& [fd, pid] : watched_) {
+    if (pid == thread.process.pid) TCS_CHECK(write(fd, &one, sizeof one) == sizeof one);
+  }
+}
+
+bool Kernel::HasEnded(pid_t pid) const {
+  return std::all_of(threads_.begin(), threads_.end(), [pid](const SimThread& thread) {
+    return thread.process.pid != pid || thread.state == SimThread::State::kDead;
+  });
+}
+
+void Kernel::Kill(pid_t pid) {
+  for (SimThread& thread : threads_) {
+    if (thread.process.pid != pid || thread.state == SimThread::State::kDead) continue;
+    thread.is_dying = true;
+    if (thread.state == SimThread::State::kInTrap && !thread.call_is_taken) {
+      std::uint64_t one;
+      TCS_CHECK(read(thread.call.listener, &one, sizeof one) == sizeof one);
+    }
+    if (thread.state != SimThread::State::kRuns) Wake(thread, 0);
+  }
 }
 
 void Kernel::Stop() {
@@ -213,8 +247,16 @@ void Kernel::Sleep(const std::function<bool()>& has_events, std::int64_t timeout
 
 void Kernel::ArmDetector(int fired_fd) { detector_fd_ = fired_fd; }
 
+void Kernel::ComputeInShim(std::int64_t ns) {
+  constexpr int kMostCalls = 2'000;
+  SimThread& thread = *running_;
+  const bool spins = ++thread.idle_calls > kMostCalls;
+  Compute(spins ? std::max(ns, until_ns_ - now_ns_ + 1) : ns, false);
+}
+
 void Kernel::Compute(std::int64_t ns, bool of_program) {
   SimThread& thread = *running_;
+  if (of_program) thread.idle_calls = 0;
   while (ns > 0) {
     const std::int64_t step_ns = std::min(ns, std::max<std::int64_t>(0, until_ns_ - now_ns_));
     now_ns_ += step_ns;
@@ -239,20 +281,29 @@ void Kernel::Notified() {
 
 long Kernel::WaitAt(const std::atomic<std::uint32_t>& word, std::uint32_t value,
                     std::int64_t timeout_ns) {
+  SimThread& thread = *running_;
   if (word.load() != value) return -EAGAIN;
   if (luck_.OnceIn(1'000)) return 0;  // for nothing
-  SimThread& thread = *running_;
-  if (Deliverable(thread) == 0) {
+  ++thread.waits;
+  const std::int64_t until_ns = now_ns_ + timeout_ns;
+  while (Deliverable(thread) == 0) {
     thread.state = SimThread::State::kAtWord;
     thread.word = &word;
-    thread.wakes_at_ns = now_ns_ + timeout_ns;
+    thread.wakes_at_ns = until_ns;
     Stop();
-  } else {
-    thread.result = -EINTR;
+    if (!thread.is_interrupted) {
+      Note(thread, "is woken, with the result", thread.result);
+      const long result = thread.result;
+      Deliver(thread);
+      return result;
+    }
+    // Another thread may have taken the signal. Then the kernel makes the call again.
+    if (Deliverable(thread) == 0 && word.load() != value) return -EAGAIN;
   }
-  const long result = thread.result;
+  Note(thread, "its wait is interrupted; it blocks",
+       static_cast<std::int64_t>(thread.blocked_signals));
   Deliver(thread);
-  return result;
+  return -EINTR;
 }
 
 long Kernel::Trap(long number, const long (&args)[6]) {
@@ -315,9 +366,12 @@ std::uint64_t Kernel::Deliverable(const SimThread& thread) const {
 // runs first; and it is the lowest one's that finds the interrupted call.
 void Kernel::Deliver(SimThread& thread, ucontext_t* call) {
   while (const std::uint64_t now = Deliverable(thread)) {
+    const std::uint64_t own = thread.pending & now & ~BitOf(shm::kPreemptionSignal);
     thread.pending &= ~now;
-    thread.process.pending &= ~now;
+    // Of one that is there for both the thread's own comes first.
+    thread.process.pending &= ~(now & ~own);
     const std::uint64_t before = thread.blocked_signals;
+    const std::int64_t sent_ns = own != 0 ? thread.sent_ns : thread.process.sent_ns;
     for (int signal = 64; signal > 0; --signal) {
       if ((now & BitOf(signal)) == 0) continue;
       const std::uint64_t lower = now & (BitOf(signal) - 1), saved = before | lower;
@@ -325,8 +379,8 @@ void Kernel::Deliver(SimThread& thread, ucontext_t* call) {
       info.si_signo = signal;
       const bool is_ours = signal == shm::kPreemptionSignal;
       info.si_code = is_ours ? SI_QUEUE : SI_TKILL;
-      info.si_value.sival_ptr = reinterpret_cast<void*>(
-          is_ours ? thread.dispatch : static_cast<std::uint64_t>(thread.sent_ns));
+      info.si_value.sival_ptr =
+          reinterpret_cast<void*>(is_ours ? thread.dispatch : static_cast<std::uint64_t>(sent_ns));
       ucontext_t context{};
       if (call != nullptr && lower == 0) context = *call;
       __builtin_memcpy(&context.uc_sigmask, &saved, sizeof saved);
@@ -368,6 +422,7 @@ void Kernel::SendToGate(pid_t tid, std::uint64_t dispatch) {
 // Without levels the kernel keeps signals from threads whose calls have been received
 // (coordinator/os/trap.cc).
 void Kernel::Send(SimThread& thread, int signal) {
+  if (thread.state == SimThread::State::kDead || thread.is_dying) return;
   if (running_ != nullptr && (thread.pending & BitOf(signal)) == 0)
     thread.sent_ns = running_->sends_ns;
   thread.pending |= BitOf(signal);
@@ -384,9 +439,13 @@ void Kernel::InterruptWait(SimThread& thread) {
 
 // The first thread that does not block it is to take it; so may any other that comes before.
 void Kernel::SendToProcess(SimProcess& process, int signal) {
+  if (running_ != nullptr && (process.pending & BitOf(signal)) == 0)
+    process.sent_ns = running_->sends_ns;
   process.pending |= BitOf(signal);
   for (SimThread& thread : threads_) {
-    if (&thread.process != &process || (thread.blocked_signals & BitOf(signal)) != 0) continue;
+    if (&thread.process != &process || thread.is_dying ||
+        (thread.blocked_signals & BitOf(signal)) != 0)
+      continue;
     return InterruptWait(thread);
   }
 }

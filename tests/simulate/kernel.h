@@ -42,12 +42,13 @@ struct SimProcess {
   pid_t pid = 0;
   int notify_fd = -1;         // its end of its pipe; the link's own
   std::uint64_t pending = 0;  // signals for whichever of its threads takes them; bit 0 is signal 1
+  std::int64_t sent_ns = 0;   // by the clock of who has sent the one that is pending
   int trap_listener = -1;     // an eventfd, readable while a call waits there
   preload::ProcessState state{preload::ProcessState::kAttached, false, {}, {}, {}};
 };
 
 struct SimThread {
-  enum class State { kRuns, kAtWord, kInTrap, kInKernel };
+  enum class State { kRuns, kAtWord, kInTrap, kInKernel, kDead };
 
   SimThread(pid_t its_tid, SimProcess& its_process, std::function<void()> body)
       : tid(its_tid), process(its_process), fiber(std::move(body)) {}
@@ -59,11 +60,14 @@ struct SimThread {
   State state = State::kRuns;
   int level = 0;
   std::int64_t ready_since = 0;  // its place in its level's queue: the least is the first
+  bool is_dying = false;         // and is dead once it has the processor
+  int idle_calls = 0;            // of the shim's, since its program has done something
   std::int64_t cpu_ns = 0;
   // Of that, what its program has computed, rather than the shim and the kernel for it.
   std::int64_t program_ns = 0;
   std::uint64_t blocked_signals = 0, pending = 0;  // bit 0 is signal 1
   std::uint64_t dispatch = 0;                      // what the signal says that sends it to its gate
+  std::int64_t waits = 0;                          // at words
   // What it waits for.
   const std::atomic<std::uint32_t>* word = nullptr;
   std::int64_t wakes_at_ns = INT64_MAX;
@@ -95,6 +99,11 @@ class Kernel {
   std::deque<SimThread>& threads() { return threads_; }
   const std::deque<SimThread>& threads() const { return threads_; }
   std::vector<pid_t> ThreadsOf(pid_t pid) const;
+  // A descriptor that is readable once the process has ended.
+  void Watch(int fd, pid_t pid) { watched_[fd] = pid; }
+  void Kill(pid_t pid);
+  void KillWatched(int fd) { Kill(watched_[fd]); }
+  bool HasEnded(pid_t pid) const;
   // The CPU clock of a thread is read by a descriptor.
   void OpensClock(int fd, pid_t tid) { clocks_[fd] = tid; }
   SimThread* OfClock(int fd) { return Find(clocks_[fd]); }
@@ -116,6 +125,8 @@ class Kernel {
   // Called with each thread that goes on with its program.
   void OnProgram(std::function<void(const SimThread&)> watch) { watch_ = std::move(watch); }
 
+  // The same for the shim: what it does again and again takes what is left of its time at once.
+  void ComputeInShim(std::int64_t ns);
   // The running thread computes; `of_program`: what it is to be charged for.
   void Compute(std::int64_t ns, bool of_program);
   // It waits at the word while that has the value, and by the clock at most so long. Returns as the
@@ -147,6 +158,7 @@ class Kernel {
  private:
   SimThread* Next();
   void Run(SimThread& thread, std::int64_t until_ns);
+  void Die(SimThread& thread);
   // The running thread stops here, until it has the processor again.
   void Stop();
   std::uint64_t Deliverable(const SimThread& thread) const;
@@ -174,7 +186,7 @@ class Kernel {
   std::uint64_t last_call_ = 0;
   std::int64_t queued_ = 0;
   bool traces_ = false;
-  std::map<int, pid_t> clocks_;
+  std::map<int, pid_t> clocks_, watched_;
   std::function<void(const SimThread&)> watch_;
 };
 

@@ -1,6 +1,8 @@
 // The port (coordinator/port/) to a simulated host: each function of it that the engine uses, in
 // the place of the kernel's.
 #include <errno.h>
+#include <poll.h>
+#include <signal.h>
 #include <string.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
@@ -49,7 +51,7 @@ std::int64_t HostClockNs(clockid_t) {
 }
 std::int64_t ProcessCpuClockNs(pid_t pid) {
   const SimThread* const thread = Find(pid);
-  return thread == nullptr ? -1 : thread->cpu_ns;
+  return thread == nullptr || thread->state == SimThread::State::kDead ? -1 : thread->cpu_ns;
 }
 int OpenThreadCpuClock(pid_t tid) {
   const int fd = eventfd(0, EFD_CLOEXEC);
@@ -59,7 +61,7 @@ int OpenThreadCpuClock(pid_t tid) {
 std::int64_t ReadThreadCpuClock(int fd) {
   Kernel::This().Spend(kProcFileNs);
   const SimThread* const thread = Kernel::This().OfClock(fd);
-  return thread == nullptr ? -1 : thread->cpu_ns;
+  return thread == nullptr || thread->state == SimThread::State::kDead ? -1 : thread->cpu_ns;
 }
 
 // levels.h
@@ -77,8 +79,16 @@ void RunOnlyWhenIdle(pid_t) {}
 void BeWokenInTime() {}
 void LeaveRealTime(pid_t) {}
 
-// pidfds.h: readable never, as no process ends.
-int OpenPidfd(pid_t) { return eventfd(0, EFD_CLOEXEC); }
+// pidfds.h
+int OpenPidfd(pid_t pid) {
+  const int fd = eventfd(0, EFD_CLOEXEC);
+  Kernel::This().Watch(fd, pid);
+  return fd;
+}
+void KillByPidfd(int pidfd) {
+  Kernel::This().Spend(kCallNs);
+  Kernel::This().KillWatched(pidfd);
+}
 int DuplicateFd(int, int) {
   errno = EBADF;
   return -1;
@@ -89,15 +99,23 @@ int WhyNoDuplicates() { return 0; }
 ComputedTimes ComputedBy(pid_t) { return {}; }
 char ThreadState(pid_t tid) {
   const SimThread* const thread = Find(tid);
-  if (thread == nullptr) return 'X';
+  if (thread == nullptr || thread->state == SimThread::State::kDead) return 'X';
   return thread->state == SimThread::State::kRuns ? 'R' : 'S';
 }
 bool IsMarkedForSignal(pid_t tid) { return ThreadState(tid) == 'R'; }
 bool IsInUserMode(pid_t) { return false; }
 pid_t ParentOf(pid_t) { return 1; }
-bool IsExiting(pid_t) { return false; }
-bool IsDying(pid_t) { return false; }
-std::optional<int> WaitStatusOf(pid_t) { return std::nullopt; }
+bool IsExiting(pid_t tid) {
+  const SimThread* const thread = Find(tid);
+  return thread != nullptr && thread->is_dying && thread->state != SimThread::State::kDead;
+}
+bool IsDying(pid_t tid) {
+  const SimThread* const thread = Find(tid);
+  return thread == nullptr || thread->is_dying;
+}
+std::optional<int> WaitStatusOf(pid_t child) {
+  return Kernel::This().HasEnded(child) ? std::optional<int>(SIGKILL) : std::nullopt;
+}
 std::optional<int> EndOf(pid_t) { return std::nullopt; }
 SignalSets ReadSignalSets(pid_t tid) {
   const SimThread* const thread = Find(tid);
@@ -178,6 +196,13 @@ std::size_t WaitForEvents(int epoll, std::span<epoll_event> events, HostDuration
   Kernel::This().Sleep(look, timeout.ns());
   if (timeout != HostDuration()) look();
   return count;
+}
+void AwaitReadable(int fd, HostDuration at_most) {
+  const auto look = [fd] {
+    pollfd one{fd, POLLIN, 0};
+    return poll(&one, 1, 0) == 1;
+  };
+  if (!look()) Kernel::This().Sleep(look, at_most.ns());
 }
 void Pause(HostDuration duration) {
   Kernel::This().Sleep([] { return false; }, duration.ns());

@@ -2,6 +2,7 @@
 
 #include <linux/futex.h>
 #include <signal.h>
+#include <string.h>
 #include <sys/syscall.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 
 // The shim's own, under other names than the C library's.
 extern "C" {
+int Simulated_kill(pid_t pid, int signal);
 int Simulated_tgkill(pid_t pid, pid_t tid, int signal);
 int Simulated_sigaction(int signal, const struct sigaction* action, struct sigaction* before);
 }
@@ -39,7 +41,8 @@ long Futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value)
 
 void SimProgram::Note(std::int64_t now_ns) {
   Kernel::This().Note(*Kernel::This().running(), "reads its clock:", now_ns);
-  if (now_ns < last_ns_) Broken("a clock went back from %ld to %ld", last_ns_, now_ns);
+  if (now_ns < last_ns_ && MustHold())
+    Broken("a clock went back from %ld to %ld", last_ns_, now_ns);
   last_ns_ = now_ns;
 }
 
@@ -55,15 +58,20 @@ void SimProgram::Sleep() {
   const std::int64_t until_ns = ReadClock() + for_ns;
   {
     preload::Entered guest;
+    // Beside whoever the kernel holds, another thread may take a signal once this one was woken for
+    // it.
     const int handled = handled_;
     if (!preload::SleepUntil(*guest.thread(), until_ns)) {
-      if (handled == handled_) Broken("a sleep was ended by a signal that nobody has handled");
+      if (handled == handled_ && MustHold() && !rules_.has_kernel_waits)
+        Broken("a sleep was ended by a signal that nobody has handled");
       return;
     }
   }
   const std::int64_t now_ns = ReadClock();
-  if (now_ns < until_ns) Broken("a sleep until %ld was over at %ld", until_ns, now_ns);
-  if (rules_.has_own_core && now_ns > until_ns + rules_.slack_ns)
+  if (rules_.is_hostile) return;
+  if (now_ns < until_ns && MustHold())
+    Broken("a sleep until %ld was over at %ld", until_ns, now_ns);
+  if (rules_.has_own_core && MustHold() && now_ns > until_ns + rules_.slack_ns)
     Broken("a sleep until %ld was over at %ld only", until_ns, now_ns);
 }
 
@@ -73,6 +81,8 @@ void SimProgram::AwaitRelease(SimLock& lock) {
   if (Futex(lock.word, FUTEX_WAIT, 2) != 0) return;
   const std::int64_t now_ns = ReadClock();
   const auto since = lock.woken_ns.begin() + static_cast<std::ptrdiff_t>(before);
+  if (rules_.is_hostile) return;
+  if (!MustHold()) return;
   if (since == lock.woken_ns.end()) Broken("a wait at a lock ended though nobody had released it");
   const std::int64_t earliest_ns = *std::min_element(since, lock.woken_ns.end());
   if (now_ns < earliest_ns)
@@ -85,11 +95,11 @@ void SimProgram::Lock(SimLock& lock) {
   if (!lock.word.compare_exchange_strong(expected, 1)) {
     while (lock.word.exchange(2) != 0) AwaitRelease(lock);
   }
-  if (lock.holder != nullptr) Broken("two threads have one lock");
+  if (lock.holder != nullptr && MustHold()) Broken("two threads have one lock");
   lock.holder = this;
   const std::int64_t now_ns = ReadClock();
   // What memory alone tells may come from as far ahead as cores are apart.
-  if (now_ns < lock.released_ns - rules_.drift_bound_ns)
+  if (now_ns < lock.released_ns - rules_.drift_bound_ns && MustHold())
     Broken("a lock that was released at %ld was taken at %ld", lock.released_ns, now_ns);
 }
 
@@ -116,7 +126,11 @@ void SimProgram::SendSignal() {
   SimThread& to = *others_[static_cast<std::size_t>(
       luck_.Between(0, static_cast<std::int64_t>(others_.size()) - 1))];
   Kernel::This().running()->sends_ns = ReadClock();
-  Simulated_tgkill(to.process.pid, to.tid, kSignal);
+  if (luck_.OnceIn(2)) {
+    Simulated_tgkill(to.process.pid, to.tid, kSignal);
+  } else {
+    Simulated_kill(to.process.pid, kSignal);
+  }
 }
 
 void SimProgram::OnSignal(int, siginfo_t* info, void*) {
@@ -124,7 +138,8 @@ void SimProgram::OnSignal(int, siginfo_t* info, void*) {
   SimProgram& program = *Kernel::This().running()->program;
   ++program.handled_;
   const std::int64_t now_ns = program.ReadClock();
-  if (now_ns < sent_ns) Broken("a signal that was sent at %ld was handled at %ld", sent_ns, now_ns);
+  if (now_ns < sent_ns && program.MustHold())
+    Broken("a signal that was sent at %ld was handled at %ld", sent_ns, now_ns);
   Compute(program.luck_.Long(kUs / 5, 100 * kUs));
   program.ReadClock();
 }
@@ -134,6 +149,59 @@ void SimProgram::HandleSignals() {
   action.sa_sigaction = OnSignal;
   action.sa_flags = SA_SIGINFO | SA_RESTART;
   Simulated_sigaction(kSignal, &action, nullptr);
+}
+
+// It says that it has computed a little less than it has, or slept a little longer.
+void SimProgram::Cheat() {
+  shm::ThreadSlot& slot = *preload::t_thread.slot;
+  const std::int64_t by_ns = luck_.Long(kUs, 5 * kMs);
+  switch (luck_.Between(0, 5)) {
+    case 0:
+      slot.clock.executed_adjust.fetch_sub(static_cast<std::uint64_t>(by_ns));
+      return;
+    case 1:
+      slot.clock.host_cpu_origin_ns += by_ns;
+      return;
+    case 2:
+      slot.clock.stolen_ns.fetch_add(by_ns);
+      return;
+    case 3:
+      slot.note.time_ns -= by_ns;
+      return;
+    case 4:
+      slot.clock.last_check_tsc.fetch_add(static_cast<std::uint64_t>(by_ns));
+      return;
+    default:
+      slot.clock.waited_adjust.fetch_add(static_cast<std::uint64_t>(by_ns));
+  }
+}
+
+// Into whatever its process shares with the coordinator.
+void SimProgram::Scribble() {
+  if (luck_.OnceIn(2)) return Cheat();
+  auto* const slot = reinterpret_cast<unsigned char*>(preload::t_thread.slot);
+  constexpr std::int64_t kSize = sizeof(shm::ThreadSlot);
+  // Where the words are that are looked at most, mostly.
+  const std::int64_t at = luck_.Between(0, luck_.OnceIn(4) ? kSize - 8 : 512) / 8 * 8;
+  std::uint64_t value = 0;
+  memcpy(&value, slot + at, sizeof value);
+  switch (luck_.Between(0, 3)) {
+    case 0:
+      value = luck_.Next();
+      break;
+    case 1:
+      value += static_cast<std::uint64_t>(luck_.Between(-100 * kMs, 100 * kMs));
+      break;
+    case 2:
+      value ^= std::uint64_t{1} << luck_.Between(0, 63);
+      break;
+    default:
+      value = 0;
+  }
+  memcpy(slot + at, &value, sizeof value);
+  // By that the shim divides, in the program's own process, which would end it.
+  std::uint64_t& rate = preload::t_thread.slot->clock.ns_per_host_ns_q32;
+  if (rate == 0) rate = 1;
 }
 
 void SimProgram::Act() {
@@ -153,8 +221,11 @@ void SimProgram::Act() {
     case 9:
       if (rules_.has_kernel_waits) Kernel::This().BlockFor(luck_.Long(10 * kUs, 10 * kMs));
       return;
+    case 11:
+      if (rules_.is_hostile) Scribble();
+      return;
     case 10:
-      if (rules_.has_signals) SendSignal();
+      if (rules_.has_signals && MustHold()) SendSignal();
       return;
     default:
       ReadClock();

@@ -28,6 +28,7 @@ struct SimLock {
 // What may be done, and what must hold besides.
 struct ProgramRules {
   bool has_kernel_waits = false, has_signals = false;
+  bool is_hostile = false;  // it writes into its slot, and nothing that it does need hold
   // Each thread of its robot has a core for itself: nobody waits for one.
   bool has_own_core = false;
   std::int64_t drift_bound_ns = 0;
@@ -46,6 +47,8 @@ class SimProgram {
   // The thread's body.
   [[noreturn]] void Run(preload::GuestThread guest);
 
+  // What it does is what honest programs do.
+  bool MustHold() const { return !rules_.is_hostile; }
   // What its clock showed after each thing that it did.
   const std::vector<std::int64_t>& shown() const { return shown_; }
 
@@ -58,6 +61,8 @@ class SimProgram {
   void Unlock(SimLock& lock);
   void UseLock();
   void SendSignal();
+  void Scribble();
+  void Cheat();
   static void OnSignal(int signal, siginfo_t* info, void* context);
   static void HandleSignals();
   void Act();

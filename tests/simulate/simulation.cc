@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "shm/clock_page.h"
 #include "tests/simulate/broken.h"
 
 namespace tcs::simulate {
@@ -71,6 +72,8 @@ Simulation::Simulation(const SimulationSeeds& seeds, bool has_levels, bool is_fi
   preload::g_header = all_.run.header;
   rules_.has_kernel_waits = !is_fixed && seeds.script % 2 == 0;
   rules_.has_signals = seeds.script % 3 != 0;
+  if (script_.OnceIn(4)) dies_at_ = static_cast<int>(script_.Between(0, 2'000));
+  rules_.is_hostile = seeds.script % 5 == 0;
   AddPrograms(script_);
   // With levels nobody computes out of turn, unless the kernel holds whoever has it.
   if (has_levels && !rules_.has_kernel_waits) {
@@ -124,7 +127,11 @@ void Simulation::AddThread(Process& process, pid_t tid, bool is_first, Luck& luc
   task.is_adopted = false;
   task.can_be_stopped = task.parked = true;
   ProgramRules rules = rules_;
-  rules.has_own_core = process.robot->cpus.size() >= kThreads;
+  // Whoever the kernel holds comes back late by what it likes.
+  rules.has_own_core = process.robot->cpus.size() >= kThreads && !rules.has_kernel_waits;
+  rules.slack_ns = static_cast<std::int64_t>(static_cast<double>(rules.slack_ns) /
+                                             std::min(1.0, process.robot->speed));
+  rules.is_hostile = rules_.is_hostile && process.robot == &all_.run.robots.back();
   SimProgram& program = programs_.emplace_back(luck.Next(), rules, locks);
   preload::GuestThread guest;
   guest.slot = task.slot_memory;
@@ -138,6 +145,7 @@ void Simulation::AddThread(Process& process, pid_t tid, bool is_first, Luck& luc
 
 int Simulation::Run(int steps) {
   for (step_ = 0; step_ < steps; ++step_) {
+    if (step_ == dies_at_) kernel_.Kill(processes_.front().pid);
     if (!all_.loop.Step()) return step_;
     if (kernel_.traces()) TraceStep();
     Check();
@@ -151,7 +159,8 @@ void Simulation::Check() {
   if (!run.report.error.empty()) Broken("the run has failed: %s", run.report.error.c_str());
   for (const std::string& warning : run.report.warnings) {
     const bool is_right =
-        rules_.has_kernel_waits && warning.find("blocked in") != std::string::npos;
+        (rules_.has_kernel_waits && warning.find("blocked in") != std::string::npos) ||
+        (rules_.is_hostile && warning.find(run.robots.back().name) != std::string::npos);
     if (!is_right) Broken("a warning: %s", warning.c_str());
   }
   if (run.root.drift() > run.scenario.drift_bound)
@@ -165,11 +174,17 @@ void Simulation::CheckCharges() {
   constexpr std::int64_t kSlackNs = 400 * kUs;
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
     const Robot& robot = *tasks_[i]->process->robot;
-    if (robot.is_ideal) continue;
+    const bool is_hostile = rules_.is_hostile && &robot == &all_.run.robots.back();
+    if (robot.is_ideal || tasks_[i]->state == TaskState::kDead) continue;
     const auto computed_ns = static_cast<std::int64_t>(
         static_cast<double>(kernel_.threads()[i].program_ns) / robot.speed);
     const std::int64_t charged_ns = tasks_[i]->charged.ns();
-    if (std::abs(charged_ns - computed_ns) > computed_ns / 100 + kSlackNs)
+    // Of each exchange with the coordinator a cheat may keep what an honest one can take.
+    const std::int64_t slack_ns =
+        computed_ns / 100 + kSlackNs +
+        (is_hostile ? 2 * kMs + kernel_.threads()[i].waits * shm::kMostExchangeNs : 0);
+    if (is_hostile && charged_ns > computed_ns) continue;
+    if (std::abs(charged_ns - computed_ns) > slack_ns)
       Broken("thread %zu has computed for %ld ns, and was charged %ld", i, computed_ns, charged_ns);
   }
 }
@@ -202,7 +217,9 @@ void Simulation::Trace() const {
 
 std::vector<std::vector<std::int64_t>> Simulation::Shown() const {
   std::vector<std::vector<std::int64_t>> shown;
-  for (const SimProgram& program : programs_) shown.push_back(program.shown());
+  for (const SimProgram& program : programs_) {
+    if (program.MustHold()) shown.push_back(program.shown());
+  }
   return shown;
 }
 

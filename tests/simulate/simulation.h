@@ -41,7 +41,7 @@ class Simulation {
   void TraceStep();
 
   const bool is_fixed_;
-  int step_ = 0;
+  int step_ = 0, dies_at_ = -1;  // the first process, at that step
   Luck script_;
   Kernel kernel_;
   Wiring all_;

@@ -250,5 +250,33 @@ TEST_F(EnginePartsAtGates, ANotificationInThePipeEndsTheTurnOfItsThread) {
   EXPECT_TRUE(run_.turn.notified);
 }
 
+// A handler may come before a thread's note was heard, and speaks over it: what the thread had said
+// counts all the same.
+TEST_F(EnginePartsAtGates, ASleepThatNobodyHasHeardOfEndsByTheHandlerThatSpokeOverIt) {
+  run_.turn.End();
+  SlotOf(*task_).interrupted = {.kind = shm::NotificationKind::kIdle,
+                                .fd_count = 0,
+                                .time_ns = 0,
+                                .deadline_ns = kMs.ns(),
+                                .args = {},
+                                .fds = {}};
+  Says(shm::NotificationKind::kInterrupted);
+  all_.notification_receiver.Handle(*task_);
+  EXPECT_EQ(task_->state, TaskState::kReady);
+  EXPECT_EQ(task_->reason, shm::WakeReason::kSignal);
+  EXPECT_EQ(task_->reply[0], 1);
+  EXPECT_EQ(task_->activations, 1);
+}
+
+TEST_F(EnginePartsAtGates, AThreadThatDidNotWaitGoesOnAfterTheHandler) {
+  run_.turn.End();
+  SlotOf(*task_).interrupted.kind = shm::NotificationKind::kHorizon;
+  Says(shm::NotificationKind::kInterrupted);
+  all_.notification_receiver.Handle(*task_);
+  EXPECT_EQ(task_->state, TaskState::kReady);
+  EXPECT_EQ(task_->reason, shm::WakeReason::kGo);
+  EXPECT_EQ(SlotOf(*task_).note.kind, shm::NotificationKind::kResumed);
+}
+
 }  // namespace
 }  // namespace tcs

@@ -12,9 +12,9 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 30u);
+  EXPECT_EQ(kVersion, 31u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
-  EXPECT_EQ(sizeof(ThreadSlot), 5376u);
+  EXPECT_EQ(sizeof(ThreadSlot), 5696u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
   EXPECT_EQ(offsetof(RunHeader, accounting), 24u);
   EXPECT_EQ(offsetof(RunHeader, shutdown), 28u);
@@ -50,6 +50,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, spin), 3288u);
   EXPECT_EQ(offsetof(ThreadSlot, spin_until_ns), 3320u);
   EXPECT_EQ(offsetof(ThreadSlot, postbox), 3328u);
+  EXPECT_EQ(offsetof(ThreadSlot, interrupted), 5376u);
 }
 
 TEST(Layout, TheRunsMemoryIsTheHeaderTheTimesOfSystemVObjectsReceiversAndLocalSockets) {
