@@ -71,6 +71,7 @@ void NotificationReceiver::TakeAgainIfUnmarked(Task& task) {
   const bool was_ended = task.parked && task.trap_id == 0 && task.slot >= 0 &&
                          task.reason == shm::WakeReason::kSignal && !task.notified_early;
   if (!was_ended) return;
+  TimerSignals::SendTo(task);  // it may be one of these
   const SignalSets sets = SignalsOf(run_, task);
   const bool is_there = (sets.own_pending | sets.shared_pending) != 0;
   if (is_there || (run_.gates_only && IsMarkedForSignal(task.tid))) return;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "coordinator/port/levels.h"
 #include "shm/check.h"
 #include "shm/layout.h"
 #include "tests/simulate/broken.h"
@@ -251,6 +252,8 @@ void Kernel::ComputeInShim(std::int64_t ns) {
   constexpr int kMostCalls = 2'000;
   SimThread& thread = *running_;
   const bool spins = ++thread.idle_calls > kMostCalls;
+  // Where there are no levels it may lose the processor at each of them.
+  if (!has_levels_ && luck_.OnceIn(200)) until_ns_ = now_ns_;
   Compute(spins ? std::max(ns, until_ns_ - now_ns_ + 1) : ns, false);
 }
 

@@ -1,11 +1,11 @@
 // tcs_simulate: the coordinator's engine on a simulated host, seed by seed.
 //
-//   tcs_simulate [--seeds N] [--seed S] [--steps N] [--trace]
+//   tcs_simulate [--first S] [--seeds N] [--seed S] [--steps N] [--trace]
 //
-// Each seed is a script of programs that runs four times: with levels and without, measured and
-// under set costs; the last ones on two hosts whose luck differs, on which they have to come to the
-// same, to the nanosecond. It ends at the first thing that does not hold, with the seed that shows
-// it.
+// Each seed is a script of programs that runs six times: with levels and without, measured and
+// twice under set costs, on two hosts whose luck differs and on which it has to come to the same,
+// to the nanosecond. The first thing that does not hold ends it, with the seed that shows it;
+// --seed S --trace then tells what happens on the way.
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -21,21 +21,21 @@
 
 namespace tcs::simulate {
 
+namespace {
+
 struct Course {
   SimulationSeeds seeds;
   bool has_levels = true, is_fixed = false;
 };
 
-namespace {
+struct Request {
+  std::uint64_t first = 1, seeds = 100;
+  int steps = 2'000;
+  bool traces = false;
+};
 
-Course g_course;
+Course g_course;  // under way: for who ends the program
 long g_steps = 0;
-
-}  // namespace
-
-bool g_traces = false;
-
-namespace {
 
 void Tell(const Course& course) {
   fprintf(stderr, "seed %lu, host %lu, %s, %s: tcs_simulate --seed %lu\n", course.seeds.script,
@@ -49,14 +49,14 @@ void OnAbort(int) {
   _exit(1);
 }
 
-std::vector<std::vector<std::int64_t>> Run(const Course& course, int steps) {
+std::vector<std::vector<std::int64_t>> Run(const Course& course, const Request& request) {
   g_course = course;
   Simulation simulation(course.seeds, course.has_levels, course.is_fixed);
-  if (g_traces) simulation.TraceAll();
-  g_steps += simulation.Run(steps);
-  if (g_traces) {
+  if (request.traces) simulation.TraceEvents();
+  g_steps += simulation.Run(request.steps);
+  if (request.traces) {
     Tell(course);
-    simulation.Trace();
+    simulation.TraceThreads();
   }
   return simulation.Shown();
 }
@@ -80,15 +80,52 @@ void Compare(const std::vector<std::vector<std::int64_t>>& one,
          one[first][act], act, other[first][act]);
 }
 
-void RunSeed(std::uint64_t seed, int steps) {
+void RunSeed(std::uint64_t seed, const Request& request) {
   const SimulationSeeds seeds{seed, 2 * seed}, elsewhere{seed, 2 * seed + 1};
-  Run({seeds, true, false}, steps);
-  Run({seeds, false, false}, steps);
-  const auto once = Run({seeds, true, true}, steps);
-  Compare(once, Run({elsewhere, true, true}, steps));
-  const auto by_gates = Run({seeds, false, true}, steps);
-  Compare(by_gates, Run({elsewhere, false, true}, steps));
-  if (seed % 3 == 0) Compare(once, by_gates);
+  Run({seeds, true, false}, request);
+  Run({seeds, false, false}, request);
+  const auto by_levels = Run({seeds, true, true}, request);
+  Compare(by_levels, Run({elsewhere, true, true}, request));
+  const auto by_gates = Run({seeds, false, true}, request);
+  Compare(by_gates, Run({elsewhere, false, true}, request));
+  if (!Simulation::HasSignals(seed)) Compare(by_levels, by_gates);
+}
+
+Request RequestOf(int count, char** arguments) {
+  Request request;
+  for (int i = 1; i < count; ++i) {
+    const std::string_view name = arguments[i];
+    if (name == "--trace") {
+      request.traces = true;
+      continue;
+    }
+    const std::uint64_t value = i + 1 < count ? strtoull(arguments[++i], nullptr, 10) : 0;
+    if (name == "--seed") {
+      request.first = value;
+      request.seeds = 1;
+    } else if (name == "--first") {
+      request.first = value;
+    } else if (name == "--seeds") {
+      request.seeds = value;
+    } else if (name == "--steps") {
+      request.steps = static_cast<int>(value);
+    } else {
+      fprintf(stderr, "tcs_simulate: there is no option %s; use --seeds N, --seed S or --trace\n",
+              arguments[i]);
+      exit(2);
+    }
+  }
+  return request;
+}
+
+void RunSeeds(const Request& request) {
+  signal(SIGABRT, OnAbort);
+  const auto begun = std::chrono::steady_clock::now();
+  for (std::uint64_t seed = request.first; seed < request.first + request.seeds; ++seed)
+    RunSeed(seed, request);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+  printf("%lu seeds, %ld steps, %.0f steps a second\n", request.seeds, g_steps,
+         static_cast<double>(g_steps) / took.count());
 }
 
 }  // namespace
@@ -106,25 +143,5 @@ void Broken(const char* what, ...) {
 }  // namespace tcs::simulate
 
 int main(int count, char** arguments) {
-  std::uint64_t first = 1, seeds = 100;
-  int steps = 2'000;
-  for (int i = 1; i < count; ++i) {
-    const std::string_view name = arguments[i];
-    if (name == "--trace") {
-      tcs::simulate::g_traces = true;
-      continue;
-    }
-    const std::uint64_t value = i + 1 < count ? strtoull(arguments[++i], nullptr, 10) : 0;
-    if (name == "--seeds") seeds = value;
-    if (name == "--seed") first = value, seeds = 1;
-    if (name == "--first") first = value;
-    if (name == "--steps") steps = static_cast<int>(value);
-  }
-  signal(SIGABRT, tcs::simulate::OnAbort);
-  const auto begun = std::chrono::steady_clock::now();
-  for (std::uint64_t seed = first; seed < first + seeds; ++seed)
-    tcs::simulate::RunSeed(seed, steps);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
-  printf("%lu seeds, %ld steps, %.0f steps a second\n", seeds, tcs::simulate::g_steps,
-         static_cast<double>(tcs::simulate::g_steps) / took.count());
+  tcs::simulate::RunSeeds(tcs::simulate::RequestOf(count, arguments));
 }

@@ -71,7 +71,7 @@ Simulation::Simulation(const SimulationSeeds& seeds, bool has_levels, bool is_fi
   preload::g_run = all_.memory;
   preload::g_header = all_.run.header;
   rules_.has_kernel_waits = !is_fixed && seeds.script % 2 == 0;
-  rules_.has_signals = seeds.script % 3 != 0;
+  rules_.has_signals = HasSignals(seeds.script);
   if (script_.OnceIn(4)) dies_at_ = static_cast<int>(script_.Between(0, 2'000));
   rules_.is_hostile = seeds.script % 5 == 0;
   AddPrograms(script_);
@@ -205,7 +205,7 @@ void Simulation::TraceStep() {
   }
 }
 
-void Simulation::Trace() const {
+void Simulation::TraceThreads() const {
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
     const SimThread& thread = kernel_.threads()[i];
     fprintf(stderr, "%s of %s: %zu acts, at %ld; computed %ld of %ld, charged %ld, debt %ld\n",

@@ -27,9 +27,12 @@ class Simulation {
   // What each thread's clock showed after each thing that it did, one thread after the other.
   std::vector<std::vector<std::int64_t>> Shown() const;
   const RunState& run() const { return all_.run; }
-  void TraceAll() { kernel_.Trace(); }
-  // What has become of each thread, on stderr.
-  void Trace() const;
+  // On stderr: each thing that happens from now on; what has become of each thread.
+  void TraceEvents() { kernel_.Trace(); }
+  void TraceThreads() const;
+  // Programs of that script send signals. When threads handle them is not the same with levels and
+  // without.
+  static bool HasSignals(std::uint64_t script) { return script % 3 != 0; }
 
  private:
   static Scenario ScenarioOf(Luck& luck);

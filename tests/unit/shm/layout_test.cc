@@ -60,7 +60,7 @@ TEST(Layout, TheRunsMemoryIsTheHeaderTheTimesOfSystemVObjectsReceiversAndLocalSo
   EXPECT_EQ(sizeof(OwnReceivers), 16u + 1024u * 112u);
   EXPECT_EQ(offsetof(PublishedRun, local_sockets), 245904u);
   EXPECT_EQ(sizeof(LocalSockets), 2u * 8192u * 16u);
-  EXPECT_EQ(kProcessMemorySize, 4096u * 5376u);
+  EXPECT_EQ(kProcessMemorySize, 4096u * 5696u);
 }
 
 TEST(Layout, NothingInItNeedsAConstructorToHaveRun) {
