@@ -52,6 +52,8 @@ GuestThread* CurrentSlow() {
   }
   if (g_process->mode == ProcessState::kFresh) ForgetSharers();
   const WithoutHandlers none;
+  // A handler that came before may have done it.
+  if (GuestThread* attached = IfAttached(); attached != nullptr) return attached;
   thread = GuestThread{};
   thread.attaching = true;
   Attach(thread, none.before());

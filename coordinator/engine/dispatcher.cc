@@ -313,7 +313,6 @@ void Dispatcher::Answer(Task& task) {
 
 void Dispatcher::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until) {
   all_.trap_receiver.TakeAgainIfUnmarked(task);
-  all_.notification_receiver.TakeAgainIfUnmarked(task);
   if (AnswerEarly(task)) return;
   if (all_.kept_calls.WaitsAgain(task)) {
     all_.event_pump.Poll(EventPump::kNoWait, {task.reached});

@@ -3,9 +3,7 @@
 #include <unistd.h>
 
 #include "coordinator/engine/wiring.h"
-#include "coordinator/port/proc_files.h"
 #include "coordinator/tasks/cpu_clock.h"
-#include "coordinator/tasks/signal_sets.h"
 #include "shm/attach_protocol.h"
 
 namespace tcs {
@@ -63,22 +61,6 @@ bool NotificationReceiver::Handle(Task& task) {
   const bool finds_more = all_.notifications.Handle(task, interrupted);
   if (!task.process->expelled) HandlerCame(task, {task.reached});
   return finds_more;
-}
-
-// As TrapReceiver does it with calls: another thread of its process has taken the signal that ended
-// the wait, and the kernel has made this one wait on. One that has begun to handle it says so.
-void NotificationReceiver::TakeAgainIfUnmarked(Task& task) {
-  const bool was_ended = task.parked && task.trap_id == 0 && task.slot >= 0 &&
-                         task.reason == shm::WakeReason::kSignal && !task.notified_early;
-  if (!was_ended) return;
-  TimerSignals::SendTo(task);  // it may be one of these
-  const SignalSets sets = SignalsOf(run_, task);
-  const bool is_there = (sets.own_pending | sets.shared_pending) != 0;
-  if (is_there || (run_.gates_only && IsMarkedForSignal(task.tid))) return;
-  const shm::NotificationKind kind = SlotOf(task).note.kind;
-  const bool is_handled =
-      kind == shm::NotificationKind::kInterrupted || kind == shm::NotificationKind::kResumed;
-  task.notified_early = !is_handled;
 }
 
 bool NotificationReceiver::PutOff(Task& task) {
