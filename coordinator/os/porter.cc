@@ -4,7 +4,6 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -143,7 +142,7 @@ void Porter::Kill() {
   pid_ = 0;
   const UniqueFd pidfd = std::move(pidfd_);
   if (!pidfd) return;
-  syscall(SYS_pidfd_send_signal, pidfd.get(), SIGKILL, nullptr, 0);
+  KillByPidfd(pidfd.get());
   pollfd gone[] = {{pidfd.get(), POLLIN, 0}};
   PollUntil(gone, NowMs() + kMostWaitMs);
   siginfo_t info;

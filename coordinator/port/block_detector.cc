@@ -3,7 +3,6 @@
 #include <signal.h>
 #include <sys/eventfd.h>
 #include <sys/prctl.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -43,7 +42,7 @@ namespace {
 BlockDetector::~BlockDetector() {
   if (!pidfd_) return;
   // By this and not by its number, which may be another's by now.
-  syscall(SYS_pidfd_send_signal, pidfd_.get(), SIGKILL, nullptr, 0);
+  KillByPidfd(pidfd_.get());
   siginfo_t info;
   waitid(P_PIDFD, static_cast<id_t>(pidfd_.get()), &info, WEXITED);
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "coordinator/os/signal_bits.h"
 #include "coordinator/port/levels.h"
 #include "shm/check.h"
 #include "shm/layout.h"
@@ -20,7 +21,15 @@ namespace {
 
 constexpr std::int64_t kUs = 1'000, kMs = 1'000'000;
 
-constexpr std::uint64_t BitOf(int signal) { return std::uint64_t{1} << (signal - 1); }
+// An eventfd is readable as often as somebody has made it so.
+void MakeReadable(int fd) {
+  const std::uint64_t one = 1;
+  TCS_CHECK(write(fd, &one, sizeof one) == sizeof one);
+}
+void TakeOne(int fd) {
+  std::uint64_t one;
+  TCS_CHECK(read(fd, &one, sizeof one) == sizeof one);
+}
 
 // The instruction at which the kernel has a thread make its call again.
 constexpr unsigned char kSyscall[] = {0x0f, 0x05};
@@ -109,17 +118,14 @@ void Kernel::Spend(std::int64_t ns) {
 std::int64_t Kernel::NextDue() const {
   std::int64_t due_ns = INT64_MAX;
   for (const SimThread& thread : threads_) {
-    if (thread.state != SimThread::State::kRuns && thread.state != SimThread::State::kDead)
-      due_ns = std::min(due_ns, thread.wakes_at_ns);
+    if (thread.Waits()) due_ns = std::min(due_ns, thread.wakes_at_ns);
   }
   return due_ns;
 }
 
 void Kernel::WakeDue() {
   for (SimThread& thread : threads_) {
-    if (thread.state == SimThread::State::kRuns || thread.state == SimThread::State::kDead ||
-        thread.wakes_at_ns > now_ns_)
-      continue;
+    if (!thread.Waits() || thread.wakes_at_ns > now_ns_) continue;
     Wake(thread, thread.state == SimThread::State::kAtWord ? -ETIMEDOUT : 0);
   }
 }
@@ -178,9 +184,8 @@ void Kernel::Die(SimThread& thread) {
   Note(thread, "is dead");
   has_said_ = true;
   if (!HasEnded(thread.process.pid)) return;
-  const std::uint64_t one = 1;
   for (const auto& [fd, pid] : watched_) {
-    if (pid == thread.process.pid) TCS_CHECK(write(fd, &one, sizeof one) == sizeof one);
+    if (pid == thread.process.pid) MakeReadable(fd);
   }
 }
 
@@ -194,11 +199,7 @@ void Kernel::Kill(pid_t pid) {
   for (SimThread& thread : threads_) {
     if (thread.process.pid != pid || thread.state == SimThread::State::kDead) continue;
     thread.is_dying = true;
-    if (thread.state == SimThread::State::kInTrap && !thread.call_is_taken) {
-      std::uint64_t one;
-      TCS_CHECK(read(thread.call.listener, &one, sizeof one) == sizeof one);
-    }
-    if (thread.state != SimThread::State::kRuns) Wake(thread, 0);
+    if (thread.state != SimThread::State::kRuns) Interrupt(thread);
   }
 }
 
@@ -224,8 +225,7 @@ void Kernel::Sleep(const std::function<bool()>& has_events, std::int64_t timeout
         has_levels_ ? level < static_cast<int>(Level::kDetector) : level == 0 || luck_.OnceIn(200);
     if (detector_fd_ >= 0 && detects) {
       now_ns_ += luck_.Between(500, 2'000);
-      const std::uint64_t one = 1;
-      TCS_CHECK(write(std::exchange(detector_fd_, -1), &one, sizeof one) == sizeof one);
+      MakeReadable(std::exchange(detector_fd_, -1));
       has_said_ = true;
     } else if (thread != nullptr) {
       const std::int64_t slice_ns = has_levels_ ? INT64_MAX / 2 : luck_.Long(20 * kUs, 4 * kMs);
@@ -319,8 +319,7 @@ long Kernel::Trap(long number, const long (&args)[6]) {
     std::copy(std::begin(args), std::end(args), std::begin(thread.call.args));
     thread.call_is_taken = false;
     thread.state = SimThread::State::kInTrap;
-    const std::uint64_t one = 1;
-    TCS_CHECK(write(thread.process.trap_listener, &one, sizeof one) == sizeof one);
+    MakeReadable(thread.process.trap_listener);
     Note(thread, "makes the call", number);
     has_said_ = true;
     if (Deliverable(thread) != 0) Interrupt(thread);
@@ -356,7 +355,7 @@ void Kernel::SetHandler(int signal, unsigned long handler) {
 std::uint64_t Kernel::Caught() const {
   std::uint64_t caught = 0;
   for (int signal = 1; signal < static_cast<int>(handlers_.size()); ++signal) {
-    if (HandlerOf(signal) != 0) caught |= BitOf(signal);
+    if (HandlerOf(signal) != 0) caught |= SignalBit(signal);
   }
   return caught;
 }
@@ -369,15 +368,15 @@ std::uint64_t Kernel::Deliverable(const SimThread& thread) const {
 // runs first; and it is the lowest one's that finds the interrupted call.
 void Kernel::Deliver(SimThread& thread, ucontext_t* call) {
   while (const std::uint64_t now = Deliverable(thread)) {
-    const std::uint64_t own = thread.pending & now & ~BitOf(shm::kPreemptionSignal);
+    const std::uint64_t own = thread.pending & now & ~SignalBit(shm::kPreemptionSignal);
     thread.pending &= ~now;
     // Of one that is there for both the thread's own comes first.
     thread.process.pending &= ~(now & ~own);
     const std::uint64_t before = thread.blocked_signals;
     const std::int64_t sent_ns = own != 0 ? thread.sent_ns : thread.process.sent_ns;
     for (int signal = 64; signal > 0; --signal) {
-      if ((now & BitOf(signal)) == 0) continue;
-      const std::uint64_t lower = now & (BitOf(signal) - 1), saved = before | lower;
+      if ((now & SignalBit(signal)) == 0) continue;
+      const std::uint64_t lower = now & (SignalBit(signal) - 1), saved = before | lower;
       siginfo_t info{};
       info.si_signo = signal;
       const bool is_ours = signal == shm::kPreemptionSignal;
@@ -388,7 +387,7 @@ void Kernel::Deliver(SimThread& thread, ucontext_t* call) {
       if (call != nullptr && lower == 0) context = *call;
       __builtin_memcpy(&context.uc_sigmask, &saved, sizeof saved);
       Note(thread, "begins the handler of signal", signal);
-      thread.blocked_signals = is_ours ? ~std::uint64_t{0} : saved | BitOf(signal);
+      thread.blocked_signals = is_ours ? ~std::uint64_t{0} : saved | SignalBit(signal);
       reinterpret_cast<void (*)(int, siginfo_t*, void*)>(HandlerOf(signal))(signal, &info,
                                                                             &context);
       if (call != nullptr && lower == 0) *std::exchange(call, nullptr) = context;
@@ -397,12 +396,10 @@ void Kernel::Deliver(SimThread& thread, ucontext_t* call) {
   }
 }
 
-// Its wait ends, as a signal is there for it.
+// Its wait ends, as a signal is there for it, or its death.
 void Kernel::Interrupt(SimThread& thread) {
-  if (thread.state == SimThread::State::kInTrap && !thread.call_is_taken) {
-    std::uint64_t one;
-    TCS_CHECK(read(thread.call.listener, &one, sizeof one) == sizeof one);
-  }
+  if (thread.state == SimThread::State::kInTrap && !thread.call_is_taken)
+    TakeOne(thread.call.listener);
   Wake(thread, -EINTR);
   thread.is_interrupted = true;
 }
@@ -426,11 +423,11 @@ void Kernel::SendToGate(pid_t tid, std::uint64_t dispatch) {
 // (coordinator/os/trap.cc).
 void Kernel::Send(SimThread& thread, int signal) {
   if (thread.state == SimThread::State::kDead || thread.is_dying) return;
-  if (running_ != nullptr && (thread.pending & BitOf(signal)) == 0)
+  if (running_ != nullptr && (thread.pending & SignalBit(signal)) == 0)
     thread.sent_ns = running_->sends_ns;
-  thread.pending |= BitOf(signal);
+  thread.pending |= SignalBit(signal);
   Note(thread, "is sent signal", signal);
-  if ((thread.blocked_signals & BitOf(signal)) == 0) InterruptWait(thread);
+  if ((thread.blocked_signals & SignalBit(signal)) == 0) InterruptWait(thread);
 }
 
 void Kernel::InterruptWait(SimThread& thread) {
@@ -442,12 +439,12 @@ void Kernel::InterruptWait(SimThread& thread) {
 
 // The first thread that does not block it is to take it; so may any other that comes before.
 void Kernel::SendToProcess(SimProcess& process, int signal) {
-  if (running_ != nullptr && (process.pending & BitOf(signal)) == 0)
+  if (running_ != nullptr && (process.pending & SignalBit(signal)) == 0)
     process.sent_ns = running_->sends_ns;
-  process.pending |= BitOf(signal);
+  process.pending |= SignalBit(signal);
   for (SimThread& thread : threads_) {
     if (&thread.process != &process || thread.is_dying ||
-        (thread.blocked_signals & BitOf(signal)) != 0)
+        (thread.blocked_signals & SignalBit(signal)) != 0)
       continue;
     return InterruptWait(thread);
   }
@@ -459,8 +456,7 @@ std::optional<TrappedCall> Kernel::ReceiveTrapped(int listener) {
         thread.call.listener != listener)
       continue;
     thread.call_is_taken = true;
-    std::uint64_t one;
-    TCS_CHECK(read(listener, &one, sizeof one) == sizeof one);
+    TakeOne(listener);
     return thread.call;
   }
   return std::nullopt;

@@ -44,7 +44,6 @@ class Kernel {
   // Two ticks a nanosecond: a unit taken for another one shows.
   std::uint64_t tsc() const { return static_cast<std::uint64_t>(now_ns_) * 2; }
   bool has_levels() const { return has_levels_; }
-  Luck& luck() { return luck_; }
 
   SimThread& AddThread(SimProcess& process, pid_t tid, std::function<void()> body);
   SimThread* Find(pid_t tid);

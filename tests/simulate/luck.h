@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace tcs::simulate {
@@ -23,6 +24,11 @@ class Luck {
     const double share = static_cast<double>(Next() >> 11) * 0x1p-53;
     const double span = std::log(static_cast<double>(most) / static_cast<double>(least));
     return static_cast<std::int64_t>(static_cast<double>(least) * std::exp(share * span));
+  }
+  // One of a container's, which has some.
+  template <class Container>
+  auto& OneOf(Container& all) {
+    return all[static_cast<std::size_t>(Between(0, static_cast<std::int64_t>(all.size()) - 1))];
   }
   // Once in so many times.
   bool OnceIn(std::uint64_t times) { return Next() % times == 0; }

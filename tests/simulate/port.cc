@@ -37,6 +37,12 @@ SimThread* Find(pid_t tid) {
   return Kernel::This().Find(tid);
 }
 
+bool Lives(const SimThread* thread) {
+  return thread != nullptr && thread->state != SimThread::State::kDead;
+}
+
+std::int64_t CpuOf(const SimThread* thread) { return Lives(thread) ? thread->cpu_ns : -1; }
+
 }  // namespace
 
 // clocks.h: before the first simulation there is no machine, and no time.
@@ -49,10 +55,7 @@ std::int64_t HostClockNs(clockid_t) {
   Kernel::This().Spend(30);
   return Kernel::This().now_ns();
 }
-std::int64_t ProcessCpuClockNs(pid_t pid) {
-  const SimThread* const thread = Find(pid);
-  return thread == nullptr || thread->state == SimThread::State::kDead ? -1 : thread->cpu_ns;
-}
+std::int64_t ProcessCpuClockNs(pid_t pid) { return CpuOf(Find(pid)); }
 int OpenThreadCpuClock(pid_t tid) {
   const int fd = eventfd(0, EFD_CLOEXEC);
   Kernel::This().OpensClock(fd, tid);
@@ -60,8 +63,7 @@ int OpenThreadCpuClock(pid_t tid) {
 }
 std::int64_t ReadThreadCpuClock(int fd) {
   Kernel::This().Spend(kProcFileNs);
-  const SimThread* const thread = Kernel::This().OfClock(fd);
-  return thread == nullptr || thread->state == SimThread::State::kDead ? -1 : thread->cpu_ns;
+  return CpuOf(Kernel::This().OfClock(fd));
 }
 
 // levels.h
@@ -99,7 +101,7 @@ int WhyNoDuplicates() { return 0; }
 ComputedTimes ComputedBy(pid_t) { return {}; }
 char ThreadState(pid_t tid) {
   const SimThread* const thread = Find(tid);
-  if (thread == nullptr || thread->state == SimThread::State::kDead) return 'X';
+  if (!Lives(thread)) return 'X';
   return thread->state == SimThread::State::kRuns ? 'R' : 'S';
 }
 bool IsMarkedForSignal(pid_t tid) { return ThreadState(tid) == 'R'; }
@@ -107,7 +109,7 @@ bool IsInUserMode(pid_t) { return false; }
 pid_t ParentOf(pid_t) { return 1; }
 bool IsExiting(pid_t tid) {
   const SimThread* const thread = Find(tid);
-  return thread != nullptr && thread->is_dying && thread->state != SimThread::State::kDead;
+  return Lives(thread) && thread->is_dying;
 }
 bool IsDying(pid_t tid) {
   const SimThread* const thread = Find(tid);

@@ -76,7 +76,6 @@ void SimProgram::AwaitRelease(SimLock& lock) {
   if (Futex(lock.word, FUTEX_WAIT, 2) != 0) return;
   const std::int64_t now_ns = ReadClock();
   const auto since = lock.woken_ns.begin() + static_cast<std::ptrdiff_t>(before);
-  if (rules_.is_hostile) return;
   if (!MustHold()) return;
   if (since == lock.woken_ns.end()) Broken("a wait at a lock ended though nobody had released it");
   const std::int64_t earliest_ns = *std::min_element(since, lock.woken_ns.end());
@@ -109,8 +108,7 @@ void SimProgram::Unlock(SimLock& lock) {
 }
 
 void SimProgram::UseLock() {
-  SimLock& lock = locks_[static_cast<std::size_t>(
-      luck_.Between(0, static_cast<std::int64_t>(locks_.size()) - 1))];
+  SimLock& lock = luck_.OneOf(locks_);
   Lock(lock);
   Compute(luck_.Long(kUs / 5, kMs));
   Unlock(lock);
@@ -118,8 +116,7 @@ void SimProgram::UseLock() {
 
 // To one thread, or to whichever of a process takes it.
 void SimProgram::SendSignal() {
-  SimThread& to = *others_[static_cast<std::size_t>(
-      luck_.Between(0, static_cast<std::int64_t>(others_.size()) - 1))];
+  const SimThread& to = *luck_.OneOf(others_);
   Kernel::This().running()->sends_ns = ReadClock();
   if (luck_.OnceIn(2)) {
     Simulated_tgkill(to.process.pid, to.tid, kSignal);
@@ -217,11 +214,11 @@ void SimProgram::Act() {
     case 9:
       if (rules_.has_kernel_waits) Kernel::This().BlockFor(luck_.Long(10 * kUs, 10 * kMs));
       return;
-    case 11:
-      if (rules_.is_hostile) Scribble();
-      return;
     case 10:
       if (rules_.has_signals && MustHold()) SendSignal();
+      return;
+    case 11:
+      if (rules_.is_hostile) Scribble();
       return;
     default:
       ReadClock();

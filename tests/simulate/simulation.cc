@@ -97,8 +97,7 @@ void Simulation::AddPrograms(Luck& luck) {
   }
   std::vector<int> threads(clients.size(), 1);
   for (int left = kThreads - static_cast<int>(clients.size()); left > 0; --left)
-    ++threads[static_cast<std::size_t>(
-        luck.Between(0, static_cast<std::int64_t>(clients.size()) - 1))];
+    ++luck.OneOf(threads);
   std::size_t number = 0;
   for (Process* client : clients) {
     client->link = ProcessLink::Make();

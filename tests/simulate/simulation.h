@@ -26,7 +26,6 @@ class Simulation {
 
   // What each thread's clock showed after each thing that it did, one thread after the other.
   std::vector<std::vector<std::int64_t>> Shown() const;
-  const RunState& run() const { return all_.run; }
   // On stderr: each thing that happens from now on; what has become of each thread.
   void TraceEvents() { kernel_.Trace(); }
   void TraceThreads() const;

@@ -32,6 +32,8 @@ struct SimThread {
   SimThread(pid_t its_tid, SimProcess& its_process, std::function<void()> body)
       : tid(its_tid), process(its_process), fiber(std::move(body)) {}
 
+  bool Waits() const { return state != State::kRuns && state != State::kDead; }
+
   const pid_t tid;
   SimProcess& process;
   Fiber fiber;
