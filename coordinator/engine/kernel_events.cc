@@ -42,7 +42,9 @@ Reactor::Found KernelEvents::OnPipe(Subject process, std::uint32_t, Moment momen
 
 Reactor::Found KernelEvents::OnListener(Subject listener, std::uint32_t, Moment) {
   if (all_.sockets.Accept(listener.index)) return {};
+  // The run ends. Who waits there for an answer would wait for ever, and the run's end for it.
   if (run_.report.error.empty()) run_.report.error = WhyNoFurtherFile();
+  all_.sockets.Close();
   return kConcernsAll;
 }
 

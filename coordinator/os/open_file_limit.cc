@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <optional>
 
 namespace tcs {
@@ -9,6 +10,15 @@ namespace tcs {
 namespace {
 
 std::optional<rlimit> g_files_before;
+
+// How many no process is given. Of a small limit a quarter, so that somebody is followed at all.
+constexpr rlim_t kForTheEnd = 32;
+
+rlim_t MostFiles() {
+  rlimit limit{};
+  getrlimit(RLIMIT_NOFILE, &limit);
+  return limit.rlim_cur;
+}
 
 }  // namespace
 
@@ -24,12 +34,16 @@ void RestoreOpenFileLimit() {
   if (g_files_before.has_value()) setrlimit(RLIMIT_NOFILE, &*g_files_before);
 }
 
+// The kernel gives the least number that is free.
+bool IsAmongLastFiles(int fd) {
+  const rlim_t most = MostFiles();
+  return static_cast<rlim_t>(fd) + std::min(kForTheEnd, most / 4) >= most;
+}
+
 std::string WhyNoFurtherFile() {
-  rlimit limit{};
-  getrlimit(RLIMIT_NOFILE, &limit);
-  return "this run has " + std::to_string(limit.rlim_cur) +
-         " files open, which is the limit, and needs several for each of its processes; raise the "
-         "limit (ulimit -n), or start fewer processes";
+  return "this run may have " + std::to_string(MostFiles()) +
+         " files open, and needs several for each of its processes; raise the limit (ulimit -n), "
+         "or start fewer processes";
 }
 
 }  // namespace tcs

@@ -10,6 +10,9 @@ namespace tcs {
 void RaiseOpenFileLimit();
 // In a child that is about to become another program.
 void RestoreOpenFileLimit();
+// This one is open, and so few can be opened besides that no further process is to be followed: the
+// run needs some for its end (a clock for its grace, /proc).
+bool IsAmongLastFiles(int fd);
 // For users: what it means that the limit is reached, and what to do.
 std::string WhyNoFurtherFile();
 

@@ -93,7 +93,8 @@ void Grace::LimitRealTime() {
   itimerspec when{};
   when.it_value = shm::ToTimespec(limit.ns());
   timerfd_settime(timer_.get(), 0, &when, nullptr);
-  reactor_.Add(timer_.get(), EPOLLIN, {Tag::kGraceRanOut});
+  // A grace that nothing bounds is none.
+  if (!reactor_.Add(timer_.get(), EPOLLIN, {Tag::kGraceRanOut})) RanOut();
 }
 
 void Grace::RanOut() {

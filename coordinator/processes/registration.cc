@@ -110,14 +110,9 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   if (process.link == nullptr && wants_all) Connect(process);
   UniqueFd porters_end;
   if (wants_all && run_.has_porters && !(porters_end = GivePorter(process))) {
-    Refuse(connection, "there is no descriptor left there for its porter");
-    return true;
+    return RefuseForFiles(connection);
   }
-  if (process.link == nullptr) {
-    if (run_.report.error.empty()) run_.report.error = WhyNoFurtherFile();
-    Refuse(connection, "tcsim can open no files for it");
-    return true;
-  }
+  if (process.link == nullptr) return RefuseForFiles(connection);
   if (task.slot < 0 && (task.slot = process.link->TakeSlot(task)) < 0) {
     Refuse(connection, "there is no room for more threads");
     return true;
@@ -138,6 +133,13 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
                                         process.link->notify_fd(), porters_end.get()};
   const std::size_t count = !wants_all ? 0 : porters_end ? 4 : 3;
   Accept(connection, static_cast<std::uint32_t>(task.slot), std::span(fds, count));
+  return true;
+}
+
+// True: the run ends.
+bool Registration::RefuseForFiles(int connection) {
+  if (run_.report.error.empty()) run_.report.error = WhyNoFurtherFile();
+  Refuse(connection, "tcsim can open no files for it");
   return true;
 }
 

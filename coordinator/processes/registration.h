@@ -84,6 +84,7 @@ class Registration {
   bool Register(const Connection& connection, Moment moment);
   const char* WhyNot(const shm::AttachHello& hello, Moment moment);
   bool TakePlace(int connection, const shm::AttachHello& hello, Process& client, Moment moment);
+  bool RefuseForFiles(int connection);
   Task& TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment);
   void TakeEndWord(Task& task, std::uint64_t address);
   void GiveDdsArea(int connection, pid_t pid);

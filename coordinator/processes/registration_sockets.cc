@@ -17,6 +17,7 @@
 #include <string_view>
 #include <utility>
 
+#include "coordinator/os/open_file_limit.h"
 #include "coordinator/port/clocks.h"
 #include "coordinator/port/proc_files.h"
 #include "coordinator/port/traps.h"
@@ -55,13 +56,18 @@ std::string RegistrationSockets::Open(const OwnComputer* computer) {
 bool RegistrationSockets::Accept(std::uint32_t number) {
   const Socket& socket = sockets_[number];
   UniqueFd fd(accept4(socket.fd.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-  if (!fd) {
-    if (errno != EMFILE && errno != ENFILE) return true;
-    reactor_.Remove(socket.fd.get());
-    return false;
-  }
+  if (!fd) return errno != EMFILE && errno != ENFILE;
+  if (IsAmongLastFiles(fd.get())) return false;
   Add({std::move(fd), socket.client});
   return true;
+}
+
+void RegistrationSockets::Close() {
+  for (Socket& socket : sockets_) {
+    if (!socket.fd) continue;
+    reactor_.Remove(socket.fd.get());
+    socket.fd.Reset();
+  }
 }
 
 bool RegistrationSockets::ConnectBy(const TrappedCall& call) {
@@ -80,7 +86,7 @@ bool RegistrationSockets::ConnectBy(const TrappedCall& call) {
       static_cast<std::size_t>(atoi(std::string(name.substr(prefix.size())).c_str()));
   const pid_t peer = ProcessOfThread(call.tid);
   int ends[2];
-  if (number >= sockets_.size() || peer <= 0 ||
+  if (number >= sockets_.size() || !sockets_[number].fd || peer <= 0 ||
       socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
     return AnswerTrapped(call.listener, call.id, -ECONNREFUSED), true;
   }

@@ -46,8 +46,11 @@ class RegistrationSockets {
   // there.
   void AssignTo(Process& client) { sockets_.back().client = &client; }
 
-  // False: there is a connection, but no descriptor for it, and there will be no other one.
+  // False: there is a connection, but no descriptor for it that the run could spare.
   [[nodiscard]] bool Accept(std::uint32_t number);
+  // Nobody comes any more: whoever has connected and has not been accepted, or connects later, is
+  // refused.
+  void Close();
   // The trapped call is to connect to one of the sockets, from a network namespace where there is
   // none (a sandbox's). It is carried out here, and answered; false: it is another call.
   bool ConnectBy(const TrappedCall& call);

@@ -1,6 +1,7 @@
 #include "coordinator/processes/registration_sockets.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 
@@ -15,7 +16,7 @@ class RegistrationSocketsTest : public testing::Test {
  protected:
   void SetUp() override {
     reactor_.On(Tag::kListener, [this](const Subject& subject, std::uint32_t, Moment) {
-      EXPECT_TRUE(sockets_.Accept(subject.index));
+      EXPECT_EQ(sockets_.Accept(subject.index), has_room_);
       return Reactor::Found{};
     });
     reactor_.On(Tag::kConnection, [this](const Subject& subject, std::uint32_t, Moment) {
@@ -44,6 +45,7 @@ class RegistrationSocketsTest : public testing::Test {
   Reactor reactor_;
   RegistrationSockets sockets_{reactor_};
   std::vector<Process*> heard_;
+  bool has_room_ = true;  // for somebody else
 };
 
 TEST_F(RegistrationSocketsTest, WhoComesToAClientsSocketDescendsFromThatClient) {
@@ -78,6 +80,26 @@ TEST_F(RegistrationSocketsTest, OfTooManyWhoSayNothingTheEarliestAreCutOff) {
   SayAnythingAt(connected.back());
   HandleAll();
   EXPECT_EQ(heard_.size(), 1u);
+}
+
+TEST_F(RegistrationSocketsTest, WhoeverComesOnceFilesAreShortIsToldSo) {
+  Process client;
+  const std::string name = sockets_.Open(nullptr);
+  sockets_.AssignTo(client);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const UniqueFd waits = ConnectTo(name);
+  // Room for one more, which is among the last.
+  const rlimit few{static_cast<rlim_t>(waits.get()) + 3, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  has_room_ = false;
+  ASSERT_GT(reactor_.Wait(HostNs(0)), 0u);
+  reactor_.Handle({});
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  sockets_.Close();
+  char byte = 0;
+  EXPECT_LE(recv(waits.get(), &byte, 1, 0), 0);
+  EXPECT_EQ(reactor_.Wait(HostNs(0)), 0u);
 }
 
 }  // namespace
