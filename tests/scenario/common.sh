@@ -26,6 +26,15 @@ new_in_shm() {
   done
   printf "%s\n" "$now"
 }
+# Whether the command comes to succeed within so many seconds. They are real ones: where runs have all processors, a look
+# every tenth of a second is one a second.
+within() {  # SECONDS COMMAND...
+  local until=$((SECONDS + $1))
+  until "${@:2}"; do
+    ((SECONDS < until)) || return 1
+    sleep 0.1
+  done
+}
 # Whether no process with these words in its command line is left, once those that were killed have had a processor to end.
 none_left() {  # WORDS
   local i

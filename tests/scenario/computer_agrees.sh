@@ -60,15 +60,15 @@ done
 "$tcsim" exec -- bash -c 'ls /sys/devices/system/cpu >/dev/null; sleep 0.1; touch "$0"; while :; do :; done' "$folder/listed" \
   >/dev/null 2>&1 &  # nor may it keep this test's stdout open, should it go on
 run=$!
-for _ in $(seq 1500); do [[ -e $folder/listed ]] && break; sleep 0.1; done  # it may have to wait for a processor first
-kill -9 "$(coordinator_of "$run")"
-ends_within_a_minute() {
-  for _ in $(seq 600); do kill -0 "$1" 2>/dev/null || return 0; sleep 0.1; done
-  return 1
-}
-ends_within_a_minute "$run" ||
-  fail "the run goes on without its coordinator: $(ps -eo pid,ppid,stat,psr,cls,etime,args | grep -E 'tcsim|bash -c ls')"
+trap 'kill -9 "$run" 2>/dev/null || true; rm -rf "$folder"' EXIT
+processes() { ps -eLo pid,ppid,tid,stat,psr,cls,rtprio,etime,time,wchan:24,args | grep -E 'tcsim|bash -c ls'; }
+# It may have to wait for a processor first.
+within 200 test -e "$folder/listed" ||
+  fail "the run did not begin: $(processes; timeout 20 "$tcsim" dump "$(coordinator_of "$run")" 2>&1)"
+coordinator=$(coordinator_of "$run")
+kill -9 "$coordinator"
+has_ended() { ! kill -0 "$run" 2>/dev/null; }
+within 60 has_ended || fail "the run goes on without its coordinator, $coordinator: $(processes)"
 wait "$run" 2>/dev/null || true
-[[ -e $folder/listed ]] || fail "the run did not begin"
 left=$(new_in_shm | grep tcs-computer) || true
 [[ -z $left ]] || fail "left behind: $left"
