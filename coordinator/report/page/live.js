@@ -14,7 +14,11 @@
 
   const seconds = ns => (ns / 1e9).toFixed(ns % 1e7 ? 3 : 2);
   let before = null, rate = null;
+  let shown = '';  // what a picture is made for once only
   function show(status) {
+    const all = JSON.stringify([status.stage, status.now, status.end, status.behind, status.wantsStand, status.pace, status.reports]);
+    if (all === shown) return;
+    shown = all;
     const of = status.end ? `${seconds(status.now)} of ${seconds(status.end)} s` : `${seconds(status.now)} s`;
     if (before && status.real > before.real && status.stage === 'goes on') {
       const now = (status.now - before.now) / (status.real - before.real);
@@ -36,7 +40,10 @@
     control('go').hidden = !about.mayControl || isOver || !status.wantsStand;
     bar.querySelector('.steps').hidden = bar.querySelector('.paces').hidden = !about.mayControl || isOver;
     const pace = control('pace');
-    if (document.activeElement === pace) return;
+    if (document.activeElement === pace) {
+      shown = '';  // it is shown once nobody chooses
+      return;
+    }
     const value = String(status.pace);
     if (![...pace.options].some(option => option.value === value)) pace.add(new Option(`${value} ×`, value));
     pace.value = value;
@@ -44,6 +51,9 @@
 
   // --- What is new ---------------------------------------------------------------------------------
 
+  // Nothing is drawn again for nothing: a page of a run that is paused takes no processor.
+  const hasMore = (to, than) => to.generation !== than.generation || to.moments > than.moments ||
+      to.said > than.said || to.slices > than.slices;
   async function ask() {
     const asked = place, {generation, moments, said, slices} = asked;
     const answer = await fetch(`news?generation=${generation}&moments=${moments}&said=${said}&slices=${slices}`, {cache: 'no-store'});
@@ -52,14 +62,14 @@
     if (place !== asked) return;  // of two that were asked at once the other one came first
     // Without a world to show so far, the page is made anew with the first one.
     if (!tcs.run && news.to.moments > 0) return location.reload();
-    if (tcs.run && news.replay) {
+    const next = {generation: news.generation, ...news.to};
+    if (tcs.run && news.replay && hasMore(next, asked)) {
       tcs.grow(news.replay, news.from);
       tcs.growTimeline(news.timeline, news.from);
     }
-    place = {generation: news.generation, ...news.to};
+    place = next;
     show(news.status);
     hasEnded = news.status.stage === 'ended';
-    document.documentElement.dataset.news = (Number(document.documentElement.dataset.news) || 0) + 1;
   }
   async function askAgain() {
     try {
