@@ -36,17 +36,17 @@ TEST_P(EveryMethodsIslands, MoveABodyAlikeHoweverOftenItIsLookedAt) {
   EXPECT_GT(often->work().changes, 20);
 }
 
-TEST(Islands, OfSimbodyEqualTheRunWithoutLeadingAfterTenThousandCommands) {
-  ExpectTakenBackToTheByte(BusyWorld({}), 10'000);
+TEST(Islands, OfSimbodyEqualTheRunWithoutLeadingAfterManyCommands) {
+  ExpectTakenBackToTheByte(BusyWorld({}), ManyCommands());
 }
 
-TEST(Islands, OfOdeEqualTheRunWithoutLeadingAfterTenThousandCommands) {
-  ExpectTakenBackToTheByte(BusyWorld(kOde), 10'000);
+TEST(Islands, OfOdeEqualTheRunWithoutLeadingAfterManyCommands) {
+  ExpectTakenBackToTheByte(BusyWorld(kOde), ManyCommands());
 }
 
 #ifdef TCS_HAS_MUJOCO
-TEST(Islands, OfMujocoEqualTheRunWithoutLeadingAfterTenThousandCommands) {
-  ExpectTakenBackToTheByte(BusyWorld({.engine = EngineKind::kMujoco}), 10'000);
+TEST(Islands, OfMujocoEqualTheRunWithoutLeadingAfterManyCommands) {
+  ExpectTakenBackToTheByte(BusyWorld({.engine = EngineKind::kMujoco}), ManyCommands());
 }
 #endif
 

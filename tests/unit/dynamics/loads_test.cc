@@ -276,12 +276,12 @@ TEST_P(EveryMethodsLoads, AreTakenBackToTheByte) {
   ExpectTakenBackToTheByte(world, 40, Kinds::kAll);
 }
 
-TEST(Loads, OfSimbodyEqualTheRunWithoutLeadingAfterTenThousandCommands) {
-  ExpectTakenBackToTheByte(BusyWorldInTheWind({}), 10'000, Kinds::kAll);
+TEST(Loads, OfSimbodyEqualTheRunWithoutLeadingAfterManyCommands) {
+  ExpectTakenBackToTheByte(BusyWorldInTheWind({}), ManyCommands(), Kinds::kAll);
 }
 
-TEST(Loads, OfOdeEqualTheRunWithoutLeadingAfterTenThousandCommands) {
-  ExpectTakenBackToTheByte(BusyWorldInTheWind(kOde), 10'000, Kinds::kAll);
+TEST(Loads, OfOdeEqualTheRunWithoutLeadingAfterManyCommands) {
+  ExpectTakenBackToTheByte(BusyWorldInTheWind(kOde), ManyCommands(), Kinds::kAll);
 }
 
 // Nothing of it is in the way of who does not use it.

@@ -1,6 +1,8 @@
 // Runs of many commands, for the tests of what a motion depends on.
 #pragma once
 
+#include <stdlib.h>
+
 #include <numeric>
 #include <random>
 #include <vector>
@@ -58,6 +60,12 @@ inline std::vector<BodyState> StatesAt(Dynamics& dynamics, std::int64_t ns, int 
   std::vector<BodyState> states(all.size());
   dynamics.Read(At(ns), all, states);
   return states;
+}
+
+// How many commands a long course has: ten thousand with `./dev test --all`.
+inline int ManyCommands() {
+  const char* const given = getenv("TCS_TEST_COMMANDS");
+  return given != nullptr ? atoi(given) : 1'500;
 }
 
 // Read ahead of the commands by up to 40 ms, so that most of them take something back.
