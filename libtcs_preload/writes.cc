@@ -85,7 +85,7 @@ int HoldToSend(GuestThread& t, int fd, const msghdr& message) {
   const bool reaches_safely = ReachesSafely(t, message);
   const int receiver = ReceiverOf(fd, message.msg_name, message.msg_namelen);
   if (!reaches_safely && !may_go_on && receiver == tcs::shm::kNoReceiver) {
-    Exchange(t, Request{.kind = tcs::shm::NotificationKind::kWrite});
+    HoldForWrite(t);
   }
   return receiver;
 }
@@ -264,9 +264,7 @@ TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
   const Entered t;
   if (t != nullptr) {
     const bool may_go_on = BeginWrite(*t);
-    if (!ReachesSafely(*t, address, size) && !may_go_on) {
-      Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kWrite});
-    }
+    if (!ReachesSafely(*t, address, size) && !may_go_on) HoldForWrite(*t);
   }
   sa_family_t family = AF_UNSPEC;
   if (t != nullptr && size >= sizeof family && CanRead(address, sizeof family)) {

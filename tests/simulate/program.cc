@@ -55,8 +55,9 @@ std::int64_t SimProgram::ReadClock() {
 
 void SimProgram::Sleep() {
   const std::int64_t for_ns = luck_.Long(kUs, 20 * kMs);
-  const std::int64_t until_ns = ReadClock() + for_ns;
+  const std::int64_t begun_ns = ReadClock(), until_ns = begun_ns + for_ns;
   const int handled = handled_;
+  first_handled_ns_ = 0;
   bool is_over = false;
   {
     preload::Entered guest;
@@ -66,6 +67,11 @@ void SimProgram::Sleep() {
   const bool was_disturbed = handled_ != handled;
   if (!MustHold()) return;
   if (is_over && now_ns < until_ns) Broken("a sleep until %ld was over at %ld", until_ns, now_ns);
+  // One that comes before the sleep has begun ends nothing.
+  if (is_over && first_handled_ns_ > begun_ns + rules_.slack_ns &&
+      first_handled_ns_ < until_ns - rules_.slack_ns)
+    Broken("a sleep until %ld went on though a signal was handled at %ld", until_ns,
+           first_handled_ns_);
   if (is_over && !was_disturbed && rules_.has_own_core && now_ns > until_ns + rules_.slack_ns)
     Broken("a sleep until %ld was over at %ld only", until_ns, now_ns);
 }
@@ -114,6 +120,24 @@ void SimProgram::UseLock() {
   Unlock(lock);
 }
 
+void SimProgram::WriteToFile() {
+  const preload::Entered guest;
+  preload::HoldForWrite(*guest.thread());
+  const std::int64_t now_ns = preload::NowNs(*guest.thread());
+  if (now_ns + rules_.call_ns < file_.read_ns)
+    Broken("what was read at %ld is written at %ld only then", file_.read_ns, now_ns);
+  file_.written_ns = std::max(file_.written_ns, now_ns);
+}
+
+void SimProgram::ReadFile() {
+  const preload::Entered guest;
+  preload::HoldForRead(*guest.thread());
+  const std::int64_t now_ns = preload::NowNs(*guest.thread());
+  if (file_.written_ns > now_ns + rules_.call_ns)
+    Broken("what is written at %ld is read at %ld", file_.written_ns, now_ns);
+  file_.read_ns = std::max(file_.read_ns, now_ns);
+}
+
 // To one thread, or to whichever of a process takes it.
 void SimProgram::SendSignal() {
   const SimThread& to = *luck_.OneOf(others_);
@@ -129,6 +153,7 @@ void SimProgram::OnSignal(int, siginfo_t* info, void*) {
   const auto sent_ns = reinterpret_cast<std::int64_t>(info->si_value.sival_ptr);
   SimProgram& program = *Kernel::This().running()->program;
   ++program.handled_;
+  if (program.first_handled_ns_ == 0) program.first_handled_ns_ = program.ReadClock();
   if (program.luck_.OnceIn(2)) Compute(program.luck_.Long(kUs / 5, 200 * kUs));
   const std::int64_t now_ns = program.ReadClock();
   if (now_ns < sent_ns && program.MustHold())
@@ -198,7 +223,7 @@ void SimProgram::Scribble() {
 }
 
 void SimProgram::Act() {
-  switch (luck_.Between(0, 12)) {
+  switch (luck_.Between(0, 16)) {
     case 0:
     case 1:
     case 2:
@@ -219,6 +244,14 @@ void SimProgram::Act() {
       return;
     case 11:
       if (rules_.is_hostile) Scribble();
+      return;
+    case 12:
+    case 13:
+      if (MustHold()) WriteToFile();
+      return;
+    case 14:
+    case 15:
+      if (MustHold()) ReadFile();
       return;
     default:
       ReadClock();

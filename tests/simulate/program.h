@@ -1,6 +1,6 @@
 // What threads of simulated programs do, for ever, as their seeds say: they compute, read clocks,
-// sleep, lock, and stand in the kernel in calls that nobody is told of. They are the shim's guests
-// as any program's threads are: what they do goes through the shim's own sources.
+// sleep, lock, read and write, and stand in the kernel in calls that nobody is told of. They are
+// the shim's guests as any program's threads are: what they do goes through the shim's own sources.
 #pragma once
 
 #include <signal.h>
@@ -24,6 +24,12 @@ struct SimLock {
   std::size_t wakes_done = 0;          // and how many of these calls are over
 };
 
+// What all threads write to and read from, as if it were a file: when last, by the clocks of those
+// who did, and so what nobody may find changed any more, or not yet there.
+struct SimFile {
+  std::int64_t written_ns = 0, read_ns = 0;
+};
+
 // What may be done, and what must hold besides.
 struct ProgramRules {
   bool has_kernel_waits = false, has_signals = false;
@@ -34,12 +40,15 @@ struct ProgramRules {
   // What a thread's clock may show beyond the end of a sleep: what it computes before it looks, and
   // what others had of its processor since its clock was last checked.
   std::int64_t slack_ns = 5'000 + 100'000;
+  // What passes between a look at the clock and what is done then; nothing of set costs.
+  std::int64_t call_ns = 0;
 };
 
 class SimProgram {
  public:
-  SimProgram(std::uint64_t seed, const ProgramRules& rules, std::deque<SimLock>& locks)
-      : luck_(seed), rules_(rules), locks_(locks) {}
+  SimProgram(std::uint64_t seed, const ProgramRules& rules, std::deque<SimLock>& locks,
+             SimFile& file)
+      : luck_(seed), rules_(rules), locks_(locks), file_(file) {}
 
   // Those that it sends signals to: of all processes, itself too.
   void Knows(std::vector<SimThread*> others) { others_ = std::move(others); }
@@ -59,6 +68,8 @@ class SimProgram {
   void Lock(SimLock& lock);
   void Unlock(SimLock& lock);
   void UseLock();
+  void WriteToFile();
+  void ReadFile();
   void SendSignal();
   void Scribble();
   void Cheat();
@@ -70,9 +81,12 @@ class SimProgram {
   Luck luck_;
   const ProgramRules rules_;
   std::deque<SimLock>& locks_;
+  SimFile& file_;
   std::vector<std::int64_t> shown_;
   std::vector<SimThread*> others_;
   int handled_ = 0;  // signals
+  // By its clock, when it began to handle the first one since its last sleep began.
+  std::int64_t first_handled_ns_ = 0;
   std::int64_t last_ns_ = 0;
 };
 

@@ -130,8 +130,9 @@ void Simulation::AddThread(Process& process, pid_t tid, bool is_first, Luck& luc
   rules.has_own_core = process.robot->cpus.size() >= kThreads && !rules.has_kernel_waits;
   rules.slack_ns = static_cast<std::int64_t>(static_cast<double>(rules.slack_ns) /
                                              std::min(1.0, process.robot->speed));
+  if (!is_fixed_) rules.call_ns = static_cast<std::int64_t>(2.0 * kUs / process.robot->speed);
   rules.is_hostile = rules_.is_hostile && process.robot == &all_.run.robots.back();
-  SimProgram& program = programs_.emplace_back(luck.Next(), rules, locks);
+  SimProgram& program = programs_.emplace_back(luck.Next(), rules, locks, file_);
   preload::GuestThread guest;
   guest.slot = task.slot_memory;
   guest.index = static_cast<std::uint32_t>(task.slot);

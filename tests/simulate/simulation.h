@@ -50,6 +50,7 @@ class Simulation {
   ProgramRules rules_;
   std::deque<SimProcess> processes_;
   std::deque<std::deque<SimLock>> locks_;
+  SimFile file_;
   std::deque<SimProgram> programs_;
   std::vector<Task*> tasks_;
   std::vector<std::int64_t> charged_;
