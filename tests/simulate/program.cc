@@ -3,15 +3,11 @@
 #include <linux/futex.h>
 #include <signal.h>
 #include <string.h>
-#include <sys/syscall.h>
 
 #include <algorithm>
 
-#include "libtcs_preload/exchange.h"
-#include "libtcs_preload/preemption.h"
-#include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/virtual_clock.h"
-#include "libtcs_preload/without_handlers.h"
+#include "tests/simulate/actions.h"
 #include "tests/simulate/broken.h"
 
 // The shim's own, under other names than the C library's.
@@ -29,14 +25,6 @@ constexpr std::int64_t kUs = 1'000, kMs = 1'000'000;
 
 constexpr int kSignal = SIGUSR1;
 
-void Compute(std::int64_t ns) { Kernel::This().Compute(ns, true); }
-
-// As the C library makes it: nothing of the shim's is on the way.
-long Futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value) {
-  return preload::RawSyscall(SYS_futex, preload::Arg(&word), operation | FUTEX_PRIVATE_FLAG, value,
-                             0, 0, preload::kTrapped);
-}
-
 }  // namespace
 
 void SimProgram::Note(std::int64_t now_ns) {
@@ -46,24 +34,19 @@ void SimProgram::Note(std::int64_t now_ns) {
   last_ns_ = now_ns;
 }
 
-std::int64_t SimProgram::ReadClock() {
-  preload::GuestThread* const guest = preload::Enter(preload::Concern::kNobody);
-  const std::int64_t now_ns = preload::NowNs(*guest);
+std::int64_t SimProgram::LookAtClock() {
+  const std::int64_t now_ns = ReadClock();
   Note(now_ns);
   return now_ns;
 }
 
 void SimProgram::Sleep() {
   const std::int64_t for_ns = luck_.Long(kUs, 20 * kMs);
-  const std::int64_t begun_ns = ReadClock(), until_ns = begun_ns + for_ns;
+  const std::int64_t begun_ns = LookAtClock(), until_ns = begun_ns + for_ns;
   const int handled = handled_;
   first_handled_ns_ = 0;
-  bool is_over = false;
-  {
-    preload::Entered guest;
-    is_over = preload::SleepUntil(*guest.thread(), until_ns);
-  }
-  const std::int64_t now_ns = ReadClock();
+  const bool is_over = SleepUntil(until_ns);
+  const std::int64_t now_ns = LookAtClock();
   const bool was_disturbed = handled_ != handled;
   if (!MustHold()) return;
   if (is_over && now_ns < until_ns) Broken("a sleep until %ld was over at %ld", until_ns, now_ns);
@@ -80,7 +63,7 @@ void SimProgram::Sleep() {
 void SimProgram::AwaitRelease(SimLock& lock) {
   const std::size_t before = lock.wakes_done;
   if (Futex(lock.word, FUTEX_WAIT, 2) != 0) return;
-  const std::int64_t now_ns = ReadClock();
+  const std::int64_t now_ns = LookAtClock();
   const auto since = lock.woken_ns.begin() + static_cast<std::ptrdiff_t>(before);
   if (!MustHold()) return;
   if (since == lock.woken_ns.end()) Broken("a wait at a lock ended though nobody had released it");
@@ -97,14 +80,14 @@ void SimProgram::Lock(SimLock& lock) {
   }
   if (lock.holder != nullptr && MustHold()) Broken("two threads have one lock");
   lock.holder = this;
-  const std::int64_t now_ns = ReadClock();
+  const std::int64_t now_ns = LookAtClock();
   // What memory alone tells may come from as far ahead as cores are apart.
   if (now_ns < lock.released_ns - rules_.drift_bound_ns && MustHold())
     Broken("a lock that was released at %ld was taken at %ld", lock.released_ns, now_ns);
 }
 
 void SimProgram::Unlock(SimLock& lock) {
-  lock.released_ns = ReadClock();
+  lock.released_ns = LookAtClock();
   lock.holder = nullptr;
   Compute(20);
   if (lock.word.exchange(0) != 2) return;
@@ -141,7 +124,7 @@ void SimProgram::ReadFile() {
 // To one thread, or to whichever of a process takes it.
 void SimProgram::SendSignal() {
   const SimThread& to = *luck_.OneOf(others_);
-  Kernel::This().running()->sends_ns = ReadClock();
+  Kernel::This().running()->sends_ns = LookAtClock();
   if (luck_.OnceIn(2)) {
     Simulated_tgkill(to.process.pid, to.tid, kSignal);
   } else {
@@ -153,13 +136,13 @@ void SimProgram::OnSignal(int, siginfo_t* info, void*) {
   const auto sent_ns = reinterpret_cast<std::int64_t>(info->si_value.sival_ptr);
   SimProgram& program = *Kernel::This().running()->program;
   ++program.handled_;
-  if (program.first_handled_ns_ == 0) program.first_handled_ns_ = program.ReadClock();
+  if (program.first_handled_ns_ == 0) program.first_handled_ns_ = program.LookAtClock();
   if (program.luck_.OnceIn(2)) Compute(program.luck_.Long(kUs / 5, 200 * kUs));
-  const std::int64_t now_ns = program.ReadClock();
+  const std::int64_t now_ns = program.LookAtClock();
   if (now_ns < sent_ns && program.MustHold())
     Broken("a signal that was sent at %ld was handled at %ld", sent_ns, now_ns);
   Compute(program.luck_.Long(kUs / 5, 100 * kUs));
-  program.ReadClock();
+  program.LookAtClock();
 }
 
 void SimProgram::HandleSignals() {
@@ -254,19 +237,8 @@ void SimProgram::Act() {
       if (MustHold()) ReadFile();
       return;
     default:
-      ReadClock();
+      LookAtClock();
   }
-}
-
-// As libtcs_preload/guest.cc and attach.cc do, but for the connection: its place is there already.
-void SimProgram::Attach(const preload::GuestThread& guest) {
-  const preload::WithoutHandlers none;
-  preload::t_thread = guest;
-  preload::t_thread.attaching = true;
-  guest.slot->blocked_signals = none.before();
-  preload::AllowPreemption();
-  preload::AwaitFirstDispatch(preload::t_thread);
-  preload::t_thread.attaching = false;
 }
 
 void SimProgram::Run(preload::GuestThread guest) {
@@ -274,7 +246,7 @@ void SimProgram::Run(preload::GuestThread guest) {
   HandleSignals();
   for (;;) {
     Act();
-    shown_.push_back(ReadClock());
+    shown_.push_back(LookAtClock());
   }
 }
 

@@ -40,7 +40,9 @@ struct ProgramRules {
   // What a thread's clock may show beyond the end of a sleep: what it computes before it looks, and
   // what others had of its processor since its clock was last checked.
   std::int64_t slack_ns = 5'000 + 100'000;
-  // What passes between a look at the clock and what is done then; nothing of set costs.
+  // What passes between a look at the clock and what is done then, and what is not yet known when a
+  // thread is dispatched: what the way of the one before it into its sleep took. On the slowest
+  // computer; nothing of set costs.
   std::int64_t call_ns = 0;
 };
 
@@ -61,8 +63,7 @@ class SimProgram {
   const std::vector<std::int64_t>& shown() const { return shown_; }
 
  private:
-  static void Attach(const preload::GuestThread& guest);
-  std::int64_t ReadClock();
+  std::int64_t LookAtClock();
   void Sleep();
   void AwaitRelease(SimLock& lock);
   void Lock(SimLock& lock);

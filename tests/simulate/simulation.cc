@@ -1,8 +1,6 @@
 #include "tests/simulate/simulation.h"
 
 #include <fmt/format.h>
-#include <sys/epoll.h>
-#include <sys/eventfd.h>
 
 #include <algorithm>
 #include <utility>
@@ -16,20 +14,6 @@ namespace {
 
 constexpr std::int64_t kUs = 1'000, kMs = 1'000'000;
 constexpr int kThreads = 8;
-constexpr pid_t kFirstPid = 1'000'000'000;
-
-HostPermits Permits(bool has_levels) {
-  HostPermits permits;
-  permits.real_time.error = has_levels ? 0 : EPERM;
-  return permits;
-}
-
-RunOptions Options(bool is_fixed) {
-  RunOptions options;
-  options.accounting = is_fixed ? shm::Accounting::kFixed : shm::Accounting::kMeasured;
-  options.date_ns = 0;
-  return options;
-}
 
 }  // namespace
 
@@ -60,16 +44,8 @@ Scenario Simulation::ScenarioOf(Luck& luck) {
 Simulation::Simulation(const SimulationSeeds& seeds, bool has_levels, bool is_fixed)
     : is_fixed_(is_fixed),
       script_(seeds.script),
-      kernel_(seeds.host, has_levels),
-      all_(ScenarioOf(script_), Options(is_fixed), Permits(has_levels)) {
-  rules_.drift_bound_ns = all_.run.scenario.drift_bound.ns();
-  all_.setup.Connect();
-  if (std::string error = all_.setup.PrepareParts({}); !error.empty())
-    Broken("the run cannot be prepared: %s", error.c_str());
-  all_.setup.MakeRobots();
-  all_.clock.Start();
-  preload::g_run = all_.memory;
-  preload::g_header = all_.run.header;
+      run_(ScenarioOf(script_), seeds.host, has_levels, is_fixed) {
+  rules_.drift_bound_ns = run_.all().run.scenario.drift_bound.ns();
   rules_.has_kernel_waits = !is_fixed && seeds.script % 2 == 0;
   rules_.has_signals = HasSignals(seeds.script);
   if (script_.OnceIn(4)) dies_at_ = static_cast<int>(script_.Between(0, 2'000));
@@ -77,8 +53,8 @@ Simulation::Simulation(const SimulationSeeds& seeds, bool has_levels, bool is_fi
   AddPrograms(script_);
   // With levels nobody computes out of turn, unless the kernel holds whoever has it.
   if (has_levels && !rules_.has_kernel_waits) {
-    kernel_.OnProgram([this](const SimThread& thread) {
-      const Turn& turn = all_.run.turn;
+    run_.kernel().OnProgram([this](const SimThread& thread) {
+      const Turn& turn = run_.all().run.turn;
       if (!turn.lasts() || turn.task()->tid != thread.tid)
         Broken("%d computes out of turn, at step %d", thread.tid, step_);
     });
@@ -87,67 +63,46 @@ Simulation::Simulation(const SimulationSeeds& seeds, bool has_levels, bool is_fi
 
 // Each client has a thread; the others are shared out.
 void Simulation::AddPrograms(Luck& luck) {
-  std::vector<Process*> clients;
-  pid_t pid = kFirstPid;
-  for (Robot& robot : all_.run.robots) {
-    for (const ClientSpec& client : all_.run.scenario.robots[robot.number - 1].clients) {
-      clients.push_back(all_.births.AddClient(pid, robot, client, {}).process);
-      pid += 1'000;
-    }
+  RunState& run = run_.all().run;
+  std::vector<std::pair<Robot*, const ClientSpec*>> clients;
+  for (Robot& robot : run.robots) {
+    for (const ClientSpec& client : run.scenario.robots[robot.number - 1].clients)
+      clients.emplace_back(&robot, &client);
   }
   std::vector<int> threads(clients.size(), 1);
   for (int left = kThreads - static_cast<int>(clients.size()); left > 0; --left)
     ++luck.OneOf(threads);
-  std::size_t number = 0;
-  for (Process* client : clients) {
-    client->link = ProcessLink::Make();
-    all_.reactor.Add(client->link->incoming_fd(), EPOLLIN, {Tag::kPipe, client->index});
-    SimProcess& process = processes_.emplace_back();
-    process.pid = client->pid;
-    process.notify_fd = client->link->notify_fd();
-    UniqueFd listener(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK | EFD_SEMAPHORE));
-    process.trap_listener = listener.get();
-    all_.traps.Add(std::move(listener));
+  for (std::size_t number = 0; number < clients.size(); ++number) {
+    const auto [robot, client] = clients[number];
+    run_.AddClient(*robot, *client);
     std::deque<SimLock>& locks = locks_.emplace_back();
     locks.resize(static_cast<std::size_t>(luck.Between(1, 3)));
-    for (int thread = 0; thread < threads[number]; ++thread)
-      AddThread(*client, client->pid + thread, thread == 0, luck, locks);
-    ++number;
+    for (int thread = 0; thread < threads[number]; ++thread) AddThread(*robot, luck, locks);
   }
   std::vector<SimThread*> all;
-  for (SimThread& thread : kernel_.threads()) all.push_back(&thread);
+  for (SimThread& thread : run_.kernel().threads()) all.push_back(&thread);
   for (SimProgram& program : programs_) program.Knows(all);
 }
 
-void Simulation::AddThread(Process& process, pid_t tid, bool is_first, Luck& luck,
-                           std::deque<SimLock>& locks) {
-  Task& task = is_first ? *all_.run.table.Living(tid) : all_.births.AddThread(process, tid, {});
-  all_.registration.GivePlace(task, {}, 0, true);
-  task.is_adopted = false;
-  task.can_be_stopped = task.parked = true;
+void Simulation::AddThread(const Robot& robot, Luck& luck, std::deque<SimLock>& locks) {
   ProgramRules rules = rules_;
   // Whoever the kernel holds comes back late by what it likes.
-  rules.has_own_core = process.robot->cpus.size() >= kThreads && !rules.has_kernel_waits;
-  rules.slack_ns = static_cast<std::int64_t>(static_cast<double>(rules.slack_ns) /
-                                             std::min(1.0, process.robot->speed));
-  if (!is_fixed_) rules.call_ns = static_cast<std::int64_t>(2.0 * kUs / process.robot->speed);
-  rules.is_hostile = rules_.is_hostile && process.robot == &all_.run.robots.back();
+  rules.has_own_core = robot.cpus.size() >= kThreads && !rules.has_kernel_waits;
+  rules.slack_ns =
+      static_cast<std::int64_t>(static_cast<double>(rules.slack_ns) / std::min(1.0, robot.speed));
+  if (!is_fixed_) rules.call_ns = 10 * kUs;
+  rules.is_hostile = rules_.is_hostile && &robot == &run_.all().run.robots.back();
   SimProgram& program = programs_.emplace_back(luck.Next(), rules, locks, file_);
-  preload::GuestThread guest;
-  guest.slot = task.slot_memory;
-  guest.index = static_cast<std::uint32_t>(task.slot);
-  guest.pid = process.pid;
-  guest.tid = tid;
-  kernel_.AddThread(processes_.back(), tid, [&program, guest] { program.Run(guest); }).program =
-      &program;
-  tasks_.push_back(&task);
+  tasks_.push_back(
+      &run_.AddThread([&program](const preload::GuestThread& guest) { program.Run(guest); }));
+  run_.kernel().threads().back().program = &program;
 }
 
 int Simulation::Run(int steps) {
   for (step_ = 0; step_ < steps; ++step_) {
-    if (step_ == dies_at_) kernel_.Kill(processes_.front().pid);
-    if (!all_.loop.Step()) return step_;
-    if (kernel_.traces()) TraceStep();
+    if (step_ == dies_at_) run_.kernel().Kill(tasks_.front()->process->pid);
+    if (!run_.all().loop.Step()) return step_;
+    if (run_.kernel().traces()) TraceStep();
     Check();
   }
   CheckCharges();
@@ -155,7 +110,7 @@ int Simulation::Run(int steps) {
 }
 
 void Simulation::Check() {
-  const RunState& run = all_.run;
+  const RunState& run = run_.all().run;
   if (!run.report.error.empty()) Broken("the run has failed: %s", run.report.error.c_str());
   for (const std::string& warning : run.report.warnings) {
     const bool is_right =
@@ -174,15 +129,15 @@ void Simulation::CheckCharges() {
   constexpr std::int64_t kSlackNs = 400 * kUs;
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
     const Robot& robot = *tasks_[i]->process->robot;
-    const bool is_hostile = rules_.is_hostile && &robot == &all_.run.robots.back();
+    const bool is_hostile = rules_.is_hostile && &robot == &run_.all().run.robots.back();
     if (robot.is_ideal || tasks_[i]->state == TaskState::kDead) continue;
     const auto computed_ns = static_cast<std::int64_t>(
-        static_cast<double>(kernel_.threads()[i].program_ns) / robot.speed);
+        static_cast<double>(run_.kernel().threads()[i].program_ns) / robot.speed);
     const std::int64_t charged_ns = tasks_[i]->charged.ns();
     // Of each exchange with the coordinator a cheat may keep what an honest one can take.
     const std::int64_t slack_ns =
         computed_ns / 100 + kSlackNs +
-        (is_hostile ? 2 * kMs + kernel_.threads()[i].waits * shm::kMostExchangeNs : 0);
+        (is_hostile ? 2 * kMs + run_.kernel().threads()[i].waits * shm::kMostExchangeNs : 0);
     if (is_hostile && charged_ns > computed_ns) continue;
     if (std::abs(charged_ns - computed_ns) > slack_ns)
       Broken("thread %zu has computed for %ld ns, and was charged %ld", i, computed_ns, charged_ns);
@@ -192,11 +147,11 @@ void Simulation::CheckCharges() {
 // Who was charged how much more in it, where that is not what was computed.
 void Simulation::TraceStep() {
   std::string cpus;
-  for (const VirtualCpu& cpu : all_.run.cpus) cpus += " " + std::to_string(cpu.progress.ns());
+  for (const VirtualCpu& cpu : run_.all().run.cpus) cpus += " " + std::to_string(cpu.progress.ns());
   fprintf(stderr, "step %d: cpus at%s\n", step_, cpus.c_str());
   charged_.resize(tasks_.size());
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
-    const SimThread& thread = kernel_.threads()[i];
+    const SimThread& thread = run_.kernel().threads()[i];
     const std::int64_t off_ns = tasks_[i]->charged.ns() - thread.program_ns;
     if (std::abs(off_ns - charged_[i]) < 2'000) continue;
     fprintf(stderr, "step %d: thread %zu is charged %ld, %ld more than it has computed\n", step_, i,
@@ -207,7 +162,7 @@ void Simulation::TraceStep() {
 
 void Simulation::TraceThreads() const {
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
-    const SimThread& thread = kernel_.threads()[i];
+    const SimThread& thread = run_.kernel().threads()[i];
     fprintf(stderr, "%s of %s: %zu acts, at %ld; computed %ld of %ld, charged %ld, debt %ld\n",
             std::to_string(tasks_[i]->tid).c_str(), tasks_[i]->process->name.c_str(),
             programs_[i].shown().size(), tasks_[i]->reached.ns(), thread.program_ns, thread.cpu_ns,

@@ -7,9 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "coordinator/engine/wiring.h"
-#include "tests/simulate/kernel.h"
 #include "tests/simulate/program.h"
+#include "tests/simulate/simulated_run.h"
 
 namespace tcs::simulate {
 
@@ -27,7 +26,7 @@ class Simulation {
   // What each thread's clock showed after each thing that it did, one thread after the other.
   std::vector<std::vector<std::int64_t>> Shown() const;
   // On stderr: each thing that happens from now on; what has become of each thread.
-  void TraceEvents() { kernel_.Trace(); }
+  void TraceEvents() { run_.kernel().Trace(); }
   void TraceThreads() const;
   // Programs of that script send signals. When threads handle them is not the same with levels and
   // without.
@@ -36,8 +35,7 @@ class Simulation {
  private:
   static Scenario ScenarioOf(Luck& luck);
   void AddPrograms(Luck& luck);
-  void AddThread(Process& process, pid_t tid, bool is_first, Luck& luck,
-                 std::deque<SimLock>& locks);
+  void AddThread(const Robot& robot, Luck& luck, std::deque<SimLock>& locks);
   void Check();
   void CheckCharges();
   void TraceStep();
@@ -45,10 +43,8 @@ class Simulation {
   const bool is_fixed_;
   int step_ = 0, dies_at_ = -1;  // the first process, at that step
   Luck script_;
-  Kernel kernel_;
-  Wiring all_;
+  SimulatedRun run_;
   ProgramRules rules_;
-  std::deque<SimProcess> processes_;
   std::deque<std::deque<SimLock>> locks_;
   SimFile file_;
   std::deque<SimProgram> programs_;

@@ -1,0 +1,43 @@
+#include "tests/simulate/actions.h"
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/preemption.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/virtual_clock.h"
+#include "libtcs_preload/without_handlers.h"
+#include "tests/simulate/kernel.h"
+
+namespace tcs::simulate {
+
+// As libtcs_preload/guest.cc and attach.cc do, but for the connection: its place is there already.
+void Attach(const preload::GuestThread& guest) {
+  const preload::WithoutHandlers none;
+  preload::t_thread = guest;
+  preload::t_thread.attaching = true;
+  guest.slot->blocked_signals = none.before();
+  preload::AllowPreemption();
+  preload::AwaitFirstDispatch(preload::t_thread);
+  preload::t_thread.attaching = false;
+}
+
+void Compute(std::int64_t ns) { Kernel::This().Compute(ns, true); }
+
+std::int64_t ReadClock() {
+  preload::GuestThread* const guest = preload::Enter(preload::Concern::kNobody);
+  return preload::NowNs(*guest);
+}
+
+bool SleepUntil(std::int64_t at_ns) {
+  preload::Entered guest;
+  return preload::SleepUntil(*guest.thread(), at_ns);
+}
+
+long Futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value) {
+  return preload::RawSyscall(SYS_futex, preload::Arg(&word), operation | FUTEX_PRIVATE_FLAG, value,
+                             0, 0, preload::kTrapped);
+}
+
+}  // namespace tcs::simulate

@@ -1,0 +1,24 @@
+// What a thread of a simulated program does, by the shim's own sources. On that thread only.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "libtcs_preload/guest.h"
+
+namespace tcs::simulate {
+
+// It has its place in the run, and waits there for its first turn.
+void Attach(const preload::GuestThread& guest);
+
+// Computes for so long by the host's clock.
+void Compute(std::int64_t ns);
+// What its clock shows.
+std::int64_t ReadClock();
+// False if a signal has ended it.
+bool SleepUntil(std::int64_t at_ns);
+// As the C library makes it: nothing of the shim's is on the way. `operation`: FUTEX_WAIT or
+// FUTEX_WAKE. Returns as the kernel does.
+long Futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value);
+
+}  // namespace tcs::simulate
