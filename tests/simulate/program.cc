@@ -142,6 +142,8 @@ void SimProgram::OnSignal(int, siginfo_t* info, void*) {
   if (now_ns < sent_ns && program.MustHold())
     Broken("a signal that was sent at %ld was handled at %ld", sent_ns, now_ns);
   Compute(program.luck_.Long(kUs / 5, 100 * kUs));
+  if (program.luck_.OnceIn(3)) program.WriteToFile();
+  if (program.luck_.OnceIn(3)) program.ReadFile();
   program.LookAtClock();
 }
 

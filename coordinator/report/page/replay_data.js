@@ -245,11 +245,14 @@ const tcs = (() => {
     if (state.isFollowing) glide(part.count && run.end - last);
   }
 
-  // To the newest moment, in about the time until the next one comes: so that it moves evenly.
-  let path = null, arrived = 0, gliding = 0;
+  // To the newest moment, in about the time until the next one comes: so that it moves evenly. Where pictures take long, as
+  // without a graphics processor, once for each newest moment: the run needs the processor, too.
+  const LONG = 40, MANY = 6;  // milliseconds from picture to picture; so many of them
+  let path = null, arrived = 0, gliding = 0, drawn = 0, slow = 0;
   function glide(more) {
     const now = performance.now();
     if (more || !path) {
+      slow = Math.max(0, slow - 0.5);  // now and then it is tried again
       path = {from: state.time, to: state.run.end, begin: now, length: Math.min(600, Math.max(60, 1.1 * (now - arrived)))};
       arrived = now;
       if (!gliding) gliding = requestAnimationFrame(onGlide);
@@ -258,7 +261,9 @@ const tcs = (() => {
   function onGlide(now) {
     gliding = 0;
     if (!state.isFollowing || !path) return;
-    const share = Math.min(1, Math.max(0, (now - path.begin) / path.length));
+    if (drawn) slow = now - drawn > LONG ? slow + 1 : Math.max(0, slow - 1);
+    const share = slow > MANY ? 1 : Math.min(1, Math.max(0, (now - path.begin) / path.length));
+    drawn = share < 1 ? now : 0;
     show(path.from + (path.to - path.from) * share);
     if (share < 1 && !gliding) gliding = requestAnimationFrame(onGlide);
   }
