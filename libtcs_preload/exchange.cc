@@ -321,12 +321,8 @@ struct Interrupted {
   }
 };
 
-}  // namespace
-
-Reply Exchange(GuestThread& thread, const Request& request) {
-  if (IsShutDown()) return Reply{WakeReason::kGo, {0, 0}};
-  const bool waits = request.interruptible || request.suspend_mask != nullptr;
-  if (waits) pthread_testcancel();
+// In whatever the thread does: it may be in a handler that has interrupted another exchange.
+Reply ExchangeAnywhere(GuestThread& thread, const Request& request) {
   Reply reply;
   if (thread.depth++ == 0) {
     reply = ExchangeOnce(thread, request);
@@ -336,8 +332,26 @@ Reply Exchange(GuestThread& thread, const Request& request) {
     outer.PutBack(*thread.slot);
   }
   --thread.depth;
-  if (waits && reply.reason == WakeReason::kSignal) pthread_testcancel();
   return reply;
+}
+
+}  // namespace
+
+// A wait that was to end for a signal of the process's may find that another thread has taken that:
+// no handler has run in this one. As the kernel has it, it waits on.
+Reply Exchange(GuestThread& thread, const Request& request) {
+  const bool waits = request.interruptible || request.suspend_mask != nullptr;
+  for (;;) {
+    if (IsShutDown()) return Reply{WakeReason::kGo, {0, 0}};
+    if (waits) pthread_testcancel();
+    const std::uint32_t handlers = thread.handlers;
+    const Reply reply = ExchangeAnywhere(thread, request);
+    if (!waits || reply.reason != WakeReason::kSignal) return reply;
+    if (thread.handlers != handlers || !request.interruptible) {
+      pthread_testcancel();
+      return reply;
+    }
+  }
 }
 
 void AwaitTurn(GuestThread& thread) {

@@ -76,6 +76,9 @@ void ClockPages::Write(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   slot.core = cpu.core;
   const VirtualTime end_of_spin = all_.spins.EndOfSpin(task);
   slot.spin_until_ns = end_of_spin.IsNever() ? shm::kNeverNs : clock.At(end_of_spin).ns();
+  // One that priority has stopped in its midst has had its answer. If a handler of its program's
+  // lies on top of an exchange, what is there is that exchange's, put back.
+  if (!task.parked) return;
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];
   slot.wake_reason.store(task.reason);

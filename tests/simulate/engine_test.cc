@@ -26,6 +26,13 @@
 #include "tests/simulate/broken.h"
 #include "tests/simulate/simulated_run.h"
 
+// The shim's own, under other names than the C library's.
+extern "C" {
+int Simulated_tgkill(pid_t pid, pid_t tid, int signal);
+int Simulated_kill(pid_t pid, int signal);
+int Simulated_sigaction(int signal, const struct sigaction* action, struct sigaction* before);
+}
+
 namespace tcs::simulate {
 
 void Broken(const char* what, ...) {
@@ -40,6 +47,13 @@ void Broken(const char* what, ...) {
 namespace {
 
 constexpr std::int64_t kUs = 1'000, kMs = 1'000'000, kSecond = 1'000'000'000;
+
+void HandleBy(void (*handler)(int, siginfo_t*, void*)) {
+  struct sigaction action {};
+  action.sa_sigaction = handler;
+  action.sa_flags = SA_SIGINFO;
+  Simulated_sigaction(SIGUSR1, &action, nullptr);
+}
 
 // Robots, each with as many clients as are added; and the run's loop, step by step.
 class Engine : public testing::Test {
@@ -310,6 +324,65 @@ TEST_F(Engine, EachDispatchHasANumber) {
   // Each thread may be a millisecond ahead of the other one.
   EXPECT_GE(numbers.size(), 5u);
   EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end()));
+}
+
+// The handler makes a call, and is stopped in its midst and dispatched anew.
+TEST_F(Engine, AWaitThatASignalEndsHasEndedWhateverTheHandlerDoes) {
+  for (const bool has_levels : {true, false}) {
+    run_.reset();
+    Begin({.count = 2}, false, has_levels);
+    bool is_over = false, was_full = true;
+    std::int64_t ended_ns = 0;
+    const Task& sleeps = Add({}, [&] {
+      HandleBy([](int, siginfo_t*, void*) {
+        {
+          const preload::Entered guest;
+          preload::HoldForWrite(*guest.thread());
+        }
+        Compute(5 * kMs);
+      });
+      was_full = SleepUntil(kSecond);
+      ended_ns = ReadClock();
+      is_over = true;
+    });
+    Add({.robot = 1}, [&] {
+      SleepUntil(10 * kMs);
+      Simulated_tgkill(sleeps.process->pid, sleeps.tid, SIGUSR1);
+      Compute(30 * kMs);
+    });
+    ASSERT_TRUE(StepUntil([&] { return is_over; }));
+    EXPECT_FALSE(was_full);
+    EXPECT_NEAR(static_cast<double>(ended_ns), 15.0 * kMs, 1.0 * kMs);
+  }
+}
+
+// One thread of a process takes a signal for all of it. The other ones sleep on.
+TEST_F(Engine, AWaitEndsForASignalOnlyWhereItsHandlerRuns) {
+  static int handled;
+  for (const bool has_levels : {true, false}) {
+    run_.reset();
+    handled = 0;
+    Begin({.count = 2, .cores = 4}, false, has_levels);
+    int ended = 0, full = 0;
+    const auto sleeps = [&] {
+      HandleBy([](int, siginfo_t*, void*) { ++handled; });
+      for (int i = 0; i < 40; ++i) {
+        if (SleepUntil(ReadClock() + 3 * kMs)) ++full;
+      }
+      ++ended;
+    };
+    const Task& first = Add({}, sleeps);
+    AddBeside(sleeps);
+    AddBeside(sleeps);
+    Add({.robot = 1}, [&] {
+      for (int i = 0; i < 20; ++i) {
+        SleepUntil(ReadClock() + 1'700 * kUs);
+        Simulated_kill(first.process->pid, SIGUSR1);
+      }
+    });
+    ASSERT_TRUE(StepUntil([&] { return ended == 3; }));
+    EXPECT_EQ(full + handled, 3 * 40);
+  }
 }
 
 TEST_F(Engine, AProcessThatSpeaksNonsenseIsEndedAndNobodyElse) {

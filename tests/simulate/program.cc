@@ -49,6 +49,8 @@ void SimProgram::Sleep() {
   const std::int64_t now_ns = LookAtClock();
   const bool was_disturbed = handled_ != handled;
   if (!MustHold()) return;
+  if (!is_over && !was_disturbed)
+    Broken("a sleep until %ld ended at %ld, and no signal was handled", until_ns, now_ns);
   if (is_over && now_ns < until_ns) Broken("a sleep until %ld was over at %ld", until_ns, now_ns);
   // One that comes before the sleep has begun ends nothing.
   if (is_over && first_handled_ns_ > begun_ns + rules_.slack_ns &&

@@ -40,9 +40,8 @@ struct ProgramRules {
   // What a thread's clock may show beyond the end of a sleep: what it computes before it looks, and
   // what others had of its processor since its clock was last checked.
   std::int64_t slack_ns = 5'000 + 100'000;
-  // What passes between a look at the clock and what is done then, and what is not yet known when a
-  // thread is dispatched: what the way of the one before it into its sleep took. On the slowest
-  // computer; nothing of set costs.
+  // By how much a clock may be ahead of what its thread does: by what others had of its processor
+  // since it was last checked. On the slowest computer; nothing of set costs.
   std::int64_t call_ns = 0;
 };
 

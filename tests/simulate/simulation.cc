@@ -90,7 +90,7 @@ void Simulation::AddThread(const Robot& robot, Luck& luck, std::deque<SimLock>& 
   rules.has_own_core = robot.cpus.size() >= kThreads && !rules.has_kernel_waits;
   rules.slack_ns =
       static_cast<std::int64_t>(static_cast<double>(rules.slack_ns) / std::min(1.0, robot.speed));
-  if (!is_fixed_) rules.call_ns = 10 * kUs;
+  if (!is_fixed_) rules.call_ns = 420 * kUs;
   rules.is_hostile = rules_.is_hostile && &robot == &run_.all().run.robots.back();
   SimProgram& program = programs_.emplace_back(luck.Next(), rules, locks, file_);
   tasks_.push_back(
