@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "coordinator/engine/wiring.h"
-#include "coordinator/os/open_file_limit.h"
 #include "coordinator/port/clocks.h"
 #include "shm/clock_page.h"
 
@@ -42,9 +41,7 @@ Reactor::Found KernelEvents::OnPipe(Subject process, std::uint32_t, Moment momen
 
 Reactor::Found KernelEvents::OnListener(Subject listener, std::uint32_t, Moment) {
   if (all_.sockets.Accept(listener.index)) return {};
-  // The run ends. Who waits there for an answer would wait for ever, and the run's end for it.
-  if (run_.report.error.empty()) run_.report.error = WhyNoFurtherFile();
-  all_.sockets.Close();
+  all_.registration.EndForWantOfFiles();
   return kConcernsAll;
 }
 

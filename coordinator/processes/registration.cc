@@ -136,9 +136,15 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   return true;
 }
 
+// Who waits at the sockets for an answer would wait for ever, and the run's end for it.
+void Registration::EndForWantOfFiles() {
+  if (run_.report.error.empty()) run_.report.error = WhyNoFurtherFile();
+  parts_.sockets.Close();
+}
+
 // True: the run ends.
 bool Registration::RefuseForFiles(int connection) {
-  if (run_.report.error.empty()) run_.report.error = WhyNoFurtherFile();
+  EndForWantOfFiles();
   Refuse(connection, "tcsim can open no files for it");
   return true;
 }

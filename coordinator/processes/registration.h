@@ -74,6 +74,8 @@ class Registration {
   // The turns of the threads that make others are over, and they have announced none of the threads
   // that wait to register.
   void RegisterUnannounced(Moment moment);
+  // No further process can be followed: nobody else is accepted, and the run ends with a sentence.
+  void EndForWantOfFiles();
   // The thread has ended.
   void Forget(const Task& ended) { early_.erase(ended.tid); }
 

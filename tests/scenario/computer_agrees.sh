@@ -60,7 +60,7 @@ done
 "$tcsim" exec -- bash -c 'ls /sys/devices/system/cpu >/dev/null; sleep 0.1; touch "$0"; while :; do :; done' "$folder/listed" \
   >/dev/null 2>&1 &  # nor may it keep this test's stdout open, should it go on
 run=$!
-trap 'kill -9 "$run" 2>/dev/null || true; rm -rf "$folder"' EXIT
+trap '[[ -z $run ]] || kill -9 "$run" 2>/dev/null || true; rm -rf "$folder"' EXIT
 processes() { ps -eLo pid,ppid,tid,stat,psr,cls,rtprio,etime,time,wchan:24,args | grep -E 'tcsim|bash -c ls'; }
 # It may have to wait for a processor first.
 within 200 test -e "$folder/listed" ||
@@ -70,5 +70,6 @@ kill -9 "$coordinator"
 has_ended() { ! kill -0 "$run" 2>/dev/null; }
 within 60 has_ended || fail "the run goes on without its coordinator, $coordinator: $(processes)"
 wait "$run" 2>/dev/null || true
+run=  # its number may be another process's from now on
 left=$(new_in_shm | grep tcs-computer) || true
 [[ -z $left ]] || fail "left behind: $left"

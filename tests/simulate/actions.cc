@@ -40,4 +40,11 @@ long Futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value)
                              0, 0, preload::kTrapped);
 }
 
+void HandleBy(int signal, void (*handler)(int, siginfo_t*, void*), int flags) {
+  struct sigaction action {};
+  action.sa_sigaction = handler;
+  action.sa_flags = SA_SIGINFO | flags;
+  Simulated_sigaction(signal, &action, nullptr);
+}
+
 }  // namespace tcs::simulate

@@ -1,10 +1,19 @@
 // What a thread of a simulated program does, by the shim's own sources. On that thread only.
 #pragma once
 
+#include <signal.h>
+
 #include <atomic>
 #include <cstdint>
 
 #include "libtcs_preload/guest.h"
+
+// The shim's own, under other names than the C library's.
+extern "C" {
+int Simulated_tgkill(pid_t pid, pid_t tid, int signal);
+int Simulated_kill(pid_t pid, int signal);
+int Simulated_sigaction(int signal, const struct sigaction* action, struct sigaction* before);
+}
 
 namespace tcs::simulate {
 
@@ -20,5 +29,7 @@ bool SleepUntil(std::int64_t at_ns);
 // As the C library makes it: nothing of the shim's is on the way. `operation`: FUTEX_WAIT or
 // FUTEX_WAKE. Returns as the kernel does.
 long Futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value);
+// All threads handle the signal so; `flags` of sigaction(2) besides SA_SIGINFO.
+void HandleBy(int signal, void (*handler)(int, siginfo_t*, void*), int flags);
 
 }  // namespace tcs::simulate

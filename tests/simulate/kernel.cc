@@ -81,13 +81,6 @@ SimThread* Kernel::Find(pid_t tid) {
   return found == threads_.end() ? nullptr : &*found;
 }
 
-const SimThread& Kernel::OfTid(pid_t tid) const {
-  const auto found = std::find_if(threads_.begin(), threads_.end(),
-                                  [tid](const SimThread& thread) { return thread.tid == tid; });
-  TCS_CHECK(found != threads_.end());
-  return *found;
-}
-
 std::vector<pid_t> Kernel::ThreadsOf(pid_t pid) const {
   std::vector<pid_t> tids;
   for (const SimThread& thread : threads_) {

@@ -47,7 +47,6 @@ class Kernel {
 
   SimThread& AddThread(SimProcess& process, pid_t tid, std::function<void()> body);
   SimThread* Find(pid_t tid);
-  const SimThread& OfTid(pid_t tid) const;
   std::deque<SimThread>& threads() { return threads_; }
   const std::deque<SimThread>& threads() const { return threads_; }
   std::vector<pid_t> ThreadsOf(pid_t pid) const;

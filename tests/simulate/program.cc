@@ -10,13 +10,6 @@
 #include "tests/simulate/actions.h"
 #include "tests/simulate/broken.h"
 
-// The shim's own, under other names than the C library's.
-extern "C" {
-int Simulated_kill(pid_t pid, int signal);
-int Simulated_tgkill(pid_t pid, pid_t tid, int signal);
-int Simulated_sigaction(int signal, const struct sigaction* action, struct sigaction* before);
-}
-
 namespace tcs::simulate {
 
 namespace {
@@ -149,12 +142,7 @@ void SimProgram::OnSignal(int, siginfo_t* info, void*) {
   program.LookAtClock();
 }
 
-void SimProgram::HandleSignals() {
-  struct sigaction action {};
-  action.sa_sigaction = OnSignal;
-  action.sa_flags = SA_SIGINFO | SA_RESTART;
-  Simulated_sigaction(kSignal, &action, nullptr);
-}
+void SimProgram::HandleSignals() { HandleBy(kSignal, OnSignal, SA_RESTART); }
 
 // It says that it has computed a little less than it has, or slept a little longer.
 void SimProgram::Cheat() {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <signal.h>
 
 #include <cstdint>
 #include <deque>
@@ -13,13 +12,6 @@
 #include "coordinator/engine/wiring.h"
 #include "tests/simulate/actions.h"
 #include "tests/simulate/simulated_run.h"
-
-// The shim's own, under other names than the C library's.
-extern "C" {
-int Simulated_tgkill(pid_t pid, pid_t tid, int signal);
-int Simulated_kill(pid_t pid, int signal);
-int Simulated_sigaction(int signal, const struct sigaction* action, struct sigaction* before);
-}
 
 namespace tcs::simulate {
 

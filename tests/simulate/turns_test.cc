@@ -163,7 +163,7 @@ TEST_F(EngineTurns, WhatIsComputedOutOfTurnIsADebt) {
   EXPECT_GT(most_debt, VirtualNs(500 * kUs));
   EXPECT_NEAR(static_cast<double>(took_ns), 20.0 * kMs, 0.01 * 20 * kMs + 200 * kUs);
   EXPECT_NEAR(static_cast<double>(deaf.charged.ns()),
-              static_cast<double>(kernel().OfTid(deaf.tid).program_ns),
+              static_cast<double>(kernel().Find(deaf.tid)->program_ns),
               0.01 * 20 * kMs + 200 * kUs);
 }
 

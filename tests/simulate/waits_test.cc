@@ -15,13 +15,6 @@
 namespace tcs::simulate {
 namespace {
 
-void HandleBy(void (*handler)(int, siginfo_t*, void*)) {
-  struct sigaction action {};
-  action.sa_sigaction = handler;
-  action.sa_flags = SA_SIGINFO;
-  Simulated_sigaction(SIGUSR1, &action, nullptr);
-}
-
 class EngineWaits : public Stage {};
 
 // Of costs that are set nothing but calls takes time: so sleeps end to the nanosecond.
@@ -104,10 +97,13 @@ TEST_F(EngineWaits, AWaitThatASignalEndsHasEndedWhateverTheHandlerDoes) {
     bool is_over = false, was_full = true;
     std::int64_t ended_ns = 0;
     const Task& sleeps = Add({}, [&] {
-      HandleBy([](int, siginfo_t*, void*) {
-        SleepUntil(ReadClock() + kMs);
-        Compute(5 * kMs);
-      });
+      HandleBy(
+          SIGUSR1,
+          [](int, siginfo_t*, void*) {
+            SleepUntil(ReadClock() + kMs);
+            Compute(5 * kMs);
+          },
+          0);
       was_full = SleepUntil(kSecond);
       ended_ns = ReadClock();
       is_over = true;
@@ -134,10 +130,13 @@ TEST_F(EngineWaits, AWaitEndsForASignalOnlyWhereItsHandlerRuns) {
     int interrupted = 0;
     bool is_over = false;
     const Task& sleeps = Add({}, [&] {
-      HandleBy([](int, siginfo_t*, void*) {
-        ++handled;
-        if (Kernel::This().running()->tid == first) ++handled_by_first;
-      });
+      HandleBy(
+          SIGUSR1,
+          [](int, siginfo_t*, void*) {
+            ++handled;
+            if (Kernel::This().running()->tid == first) ++handled_by_first;
+          },
+          0);
       while (ReadClock() < kSecond) {
         if (!SleepUntil(ReadClock() + 30 * kMs)) ++interrupted;
       }
