@@ -13,6 +13,10 @@ option(TCS_WERROR "Treat warnings as errors, as developers and CI do; compilers 
 # includes do not show then: `./dev build dev` compiles each source by itself.
 option(TCS_UNITY "Compile many sources of a library at a time" OFF)
 set(TCS_UNITY_BATCH 24)
+# GCC looks for memory to use again whenever it has taken a third more: a tenth of its time, and a quarter less memory.
+if(TCS_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:--param ggc-min-expand=300 --param ggc-min-heapsize=524288>")
+endif()
 option(TCS_CHECK_ONLY "Sources are read, and nothing is made of them" OFF)
 if(TCS_CHECK_ONLY)
   add_compile_options(-fsyntax-only)
