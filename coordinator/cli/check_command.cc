@@ -8,8 +8,8 @@
 #include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/expected.h"
 #include "coordinator/cli/print.h"
+#include "coordinator/errors/visible.h"
 #include "coordinator/os/files.h"
-#include "coordinator/os/visible.h"
 #include "coordinator/scenario/load.h"
 #include "coordinator/world/world.h"
 

@@ -10,7 +10,7 @@
 #include "coordinator/compare/judge.h"
 #include "coordinator/compare/read_side.h"
 #include "coordinator/compare/words.h"
-#include "coordinator/os/visible.h"
+#include "coordinator/errors/visible.h"
 #include "coordinator/text/csv.h"
 
 namespace tcs {

@@ -7,11 +7,11 @@
 
 #include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
+#include "coordinator/errors/visible.h"
 #include "coordinator/fit/fit_table.h"
 #include "coordinator/fit/fragment.h"
 #include "coordinator/fit/measured_run.h"
 #include "coordinator/os/files.h"
-#include "coordinator/os/visible.h"
 
 namespace tcs {
 

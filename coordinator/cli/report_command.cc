@@ -2,7 +2,7 @@
 
 #include "coordinator/cli/basics/exit_status.h"
 #include "coordinator/cli/print.h"
-#include "coordinator/os/visible.h"
+#include "coordinator/errors/visible.h"
 #include "coordinator/report/page.h"
 #include "coordinator/report/read_results.h"
 #include "coordinator/report/text.h"

@@ -8,7 +8,7 @@
 #include "coordinator/cli/print.h"
 #include "coordinator/dds/topics_file.h"
 #include "coordinator/dds/topics_table.h"
-#include "coordinator/os/visible.h"
+#include "coordinator/errors/visible.h"
 
 namespace tcs {
 

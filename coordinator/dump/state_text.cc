@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "coordinator/os/visible.h"
+#include "coordinator/errors/visible.h"
 
 namespace tcs {
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "coordinator/errors/visible.h"
 #include "coordinator/models/mend_masses.h"
 #include "coordinator/models/model_mistake.h"
 #include "coordinator/models/urdf_customs.h"
@@ -14,7 +15,6 @@
 #include "coordinator/models/urdf_values.h"
 #include "coordinator/models/urdf_xml.h"
 #include "coordinator/models/xacro.h"
-#include "coordinator/os/visible.h"
 #include "simbody_bridge/model/rigid_tree.h"
 #include "simbody_bridge/model/vectors.h"
 

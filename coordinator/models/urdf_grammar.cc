@@ -11,10 +11,10 @@
 #include <string_view>
 
 #include "coordinator/errors/nearest.h"
+#include "coordinator/errors/visible.h"
 #include "coordinator/models/urdf_friction.h"
 #include "coordinator/models/urdf_rules.h"
 #include "coordinator/models/urdf_xml.h"
-#include "coordinator/os/visible.h"
 
 namespace tcs {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "coordinator/os/visible.h"
+#include "coordinator/errors/visible.h"
 
 namespace tcs {
 namespace {

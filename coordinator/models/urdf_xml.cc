@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "coordinator/errors/visible.h"
 #include "coordinator/models/file_text.h"
 #include "coordinator/models/model_mistake.h"
-#include "coordinator/os/visible.h"
 
 namespace tcs {
 namespace {

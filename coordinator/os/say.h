@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "coordinator/os/visible.h"
+#include "coordinator/errors/visible.h"
 
 namespace tcs {
 

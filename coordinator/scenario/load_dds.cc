@@ -268,7 +268,7 @@ void CheckDdsTransports(const YamlMap& top, Scenario* scenario) {
   if (!scenario->network) return;
   const std::string topics = NamesOfOwnTopics(*scenario);
   if (topics.empty()) return;
-  const YamlMap robots = top.Find("robots")->AsMap();
+  const YamlMap robots = RobotsOf(top).AsMap();
   for (const YamlMap::Entry& robot : robots.entries()) {
     const YamlMap robot_map = robot.value.AsMap();
     const YamlMap client_map = robot_map.Find("clients")->AsMap();

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "coordinator/errors/nearest.h"
+#include "coordinator/errors/visible.h"
 #include "coordinator/models/load_urdf.h"
 #include "coordinator/models/model_mistake.h"
 #include "coordinator/models/srdf.h"
@@ -185,8 +186,8 @@ class Models {
 
   [[noreturn]] static void Refuse(const YamlValue& urdf, const std::string& path,
                                   const LoadError& error) {
-    // Of a file as a whole it is the scenario that is to be mended.
-    if (error.message.starts_with(path + ": ")) {
+    // Of a file as a whole it is the scenario that is to be mended. Messages show names of files.
+    if (error.message.starts_with(Visible(path) + ": ")) {
       urdf.FailPlainly(urdf.name() + ": " + error.message);
     }
     throw ScenarioMistake{error.message};

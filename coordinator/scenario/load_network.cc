@@ -137,7 +137,7 @@ std::string LoadAddress(const YamlValue& value) {
 
 // Of all robots; those that say none are numbered.
 std::vector<std::string> LoadAddresses(const YamlMap& top, const YamlValue& network) {
-  const YamlMap robots = top.Find("robots")->AsMap();
+  const YamlMap robots = RobotsOf(top).AsMap();
   if (robots.entries().size() > kMostRobots) {
     network.Fail("has " + std::to_string(robots.entries().size()) + " robots; at most " +
                  std::to_string(kMostRobots) + " fit into one network");
@@ -161,7 +161,7 @@ std::vector<std::string> LoadAddresses(const YamlMap& top, const YamlValue& netw
 }
 
 void RefuseAddresses(const YamlMap& top) {
-  const YamlMap robots = top.Find("robots")->AsMap();
+  const YamlMap robots = RobotsOf(top).AsMap();
   for (const YamlMap::Entry& robot : robots.entries()) {
     const YamlMap map = robot.value.AsMap();
     if (const YamlValue* address = map.Find("address")) {

@@ -175,9 +175,12 @@ RobotSpec LoadRobot(const YamlMap::Entry& entry, const Variables& variables,
 
 }  // namespace
 
+const YamlValue& RobotsOf(const YamlMap& top) {
+  return top.Require("robots", "robots: {predator: {clients: {controller: {command: [./fly]}}}}");
+}
+
 void LoadRobots(const YamlMap& top, const Variables& variables, Scenario* scenario) {
-  const YamlValue& robots =
-      top.Require("robots", "robots: {predator: {clients: {controller: {command: [./fly]}}}}");
+  const YamlValue& robots = RobotsOf(top);
   const YamlMap map = robots.AsMap();
   if (map.entries().empty()) robots.Fail("is empty; a scenario needs at least one robot");
   map.ForEach([&](const YamlMap::Entry& entry) {

@@ -21,6 +21,8 @@ void LoadModels(const YamlValue& value, const Variables& variables, Scenario* sc
 
 // `robots`. Reads the duration and the world's bodies from `scenario`.
 void LoadRobots(const YamlMap& top, const Variables& variables, Scenario* scenario);
+// `robots` itself; a scenario without one is refused, also where all mistakes are asked for.
+const YamlValue& RobotsOf(const YamlMap& top);
 
 // `network`, and the robots' addresses. Reads the robots and the seed from `scenario`.
 void LoadNetwork(const YamlMap& top, Scenario* scenario);

@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/errors/visible.h"
 #include "coordinator/fit/fit_table.h"
 #include "coordinator/fit/fragment.h"
 #include "coordinator/fit/measured_run.h"
-#include "coordinator/os/visible.h"
 #include "coordinator/report/page.h"
 #include "coordinator/report/read_results.h"
 #include "coordinator/report/write.h"

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "coordinator/os/visible.h"
+#include "coordinator/errors/visible.h"
 #include "coordinator/scenario/load.h"
 #include "tests/unit/fuzz/fuzz.h"
 #include "tests/unit/fuzz/mutate.h"
@@ -115,18 +115,35 @@ bool NamesItsPlace(const std::string& message, const std::string& path) {
   return rest.starts_with(" is larger than 1 MiB");
 }
 
-// What is wrong with how the loader takes the scenario, or nothing; `refused` is told apart by the
-// first character.
+std::string WrongWith(const LoadError& error, const std::string& path) {
+  if (!NamesItsPlace(error.message, path)) {
+    return "a refusal does not say where: " + Visible(error.message);
+  }
+  if (error.message.size() > path.size() + 100'000) return "a refusal is of endless length";
+  return {};
+}
+
+// What is wrong with how the loader takes the scenario, or nothing: up to its first mistake, and
+// for all of them.
 std::string Load(const std::string& path, const std::vector<std::string>& set, bool* refused) {
-  const auto loaded =
-      LoadScenario(path, {.overlays = {}, .set = set, .duration = {}, .drift = {}, .seed = {}});
+  const ScenarioOverrides overrides{
+      .overlays = {}, .set = set, .duration = {}, .drift = {}, .seed = {}};
+  const auto loaded = LoadScenario(path, overrides);
   const auto* error = std::get_if<LoadError>(&loaded);
   *refused = error != nullptr;
-  if (error == nullptr) return {};
-  if (!NamesItsPlace(error->message, path)) {
-    return "a refusal does not say where: " + Visible(error->message);
+  if (error != nullptr) {
+    if (std::string wrong = WrongWith(*error, path); !wrong.empty()) return wrong;
   }
-  if (error->message.size() > path.size() + 100'000) return "a refusal is of endless length";
+  const auto checked = CheckScenario(path, overrides);
+  const auto* mistakes = std::get_if<std::vector<LoadError>>(&checked);
+  if ((mistakes != nullptr) != *refused) {
+    return *refused ? "a check finds nothing of: " + Visible(error->message)
+                    : "a check refuses what a run takes: " + Visible(mistakes->front().message);
+  }
+  if (mistakes == nullptr) return {};
+  for (const LoadError& mistake : *mistakes) {
+    if (std::string wrong = WrongWith(mistake, path); !wrong.empty()) return "checked: " + wrong;
+  }
   return {};
 }
 

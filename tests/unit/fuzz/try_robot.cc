@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/errors/visible.h"
 #include "coordinator/models/load_urdf.h"
-#include "coordinator/os/visible.h"
 #include "simbody_bridge/engines.h"
 #include "simbody_bridge/model/model_check.h"
 

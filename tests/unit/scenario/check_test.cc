@@ -85,5 +85,12 @@ TEST(Check, SaysWhereTheCommandLineIsWrong) {
   EXPECT_THAT(mistakes[1].message, HasSubstr("--set robots.hunter.cpu.cores=65: "));
 }
 
+TEST(Check, SaysOnceThatThereAreNoRobots) {
+  const ScenarioFolder folder;
+  const auto lacks = HasSubstr("s.yaml:1: the scenario lacks the key 'robots'");
+  EXPECT_THAT(MistakesIn(folder, "duration: 1s\n"), ElementsAre(lacks));
+  EXPECT_THAT(MistakesIn(folder, "duration: 1s\nnetwork: {}\n"), ElementsAre(lacks));
+}
+
 }  // namespace
 }  // namespace tcs

@@ -1,4 +1,4 @@
-#include "coordinator/os/visible.h"
+#include "coordinator/errors/visible.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "coordinator/os/visible.h"
+#include "coordinator/errors/visible.h"
 
 #include <array>
 #include <cstdint>
