@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <string>
 #include <system_error>
+
+#include "coordinator/text/csv.h"
 
 namespace tcs {
 
@@ -15,8 +18,8 @@ void RemoveLogsOfEarlierRun(const std::string& folder, const Scenario& scenario)
     for (const ClientSpec& client : robot.clients) ours.insert(FileNameOf(client));
   }
   for (const char* of : {"/summary.json", "/unfinished.json"}) {
-    std::ifstream file(folder + of);
-    const nlohmann::json summary = nlohmann::json::parse(file, nullptr, false);
+    const std::optional<std::string> text = ReadFile(folder + of);
+    const nlohmann::json summary = nlohmann::json::parse(text.value_or(""), nullptr, false);
     if (!summary.is_object() || !summary.contains("clients")) continue;
     for (const auto& [name, client] : summary["clients"].items()) {
       std::string base = name;

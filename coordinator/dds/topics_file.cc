@@ -1,19 +1,16 @@
 #include "coordinator/dds/topics_file.h"
 
 #include <fmt/format.h>
-#include <string.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 #include <tuple>
 
 #include "coordinator/os/files.h"
+#include "coordinator/text/csv.h"
 
 namespace tcs::dds {
 namespace {
@@ -132,19 +129,19 @@ LoadResult<std::vector<TopicReport>> ReadTopics(const std::string& folder) {
   if (!std::filesystem::is_directory(folder, error)) {
     return LoadError{"there is no folder '" + folder + "'; give one that tcsim run has written"};
   }
-  std::ifstream file(path, std::ios::binary);
-  if (!file && errno == ENOENT) {
+  if (std::filesystem::symlink_status(path, error).type() ==
+      std::filesystem::file_type::not_found) {
     return LoadError{
         "'" + folder +
         "' has no topics.json: no program of the run used DDS in shared memory, or the run "
         "did not come to its end"};
   }
-  if (!file) return LoadError{fmt::format("{} cannot be read: {}", path, strerror(errno))};
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::optional<std::string> text = ReadFile(path);
+  if (!text) return LoadError{path + " is no file that can be read; make the run again"};
   const LoadError damaged{path + " is damaged; make the run again"};
   std::vector<TopicReport> topics;
   try {
-    const Json json = Json::parse(text);
+    const Json json = Json::parse(*text);
     const int version = json.at("version").get<int>();
     if (version > kVersion) {
       return LoadError{path +

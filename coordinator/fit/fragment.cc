@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/text/yaml_text.h"
+
 namespace tcs::fit {
 
 namespace {
-
-// Quoted, as a name may look like YAML's nothing, or like a number.
-std::string Key(std::string_view name) { return fmt::format("\"{}\"", name); }
 
 std::string CostsOf(const Costs& costs) {
   std::string text;
@@ -38,11 +37,12 @@ std::string FragmentOf(const MeasuredRun& run, const std::vector<ClientFit>& fit
     if (slash == std::string::npos || (!fit.costs.call_ns && !fit.costs.allocation_ns)) continue;
     const std::string robot = fit.client.substr(0, slash);
     if (robot != robot_before) {
-      clients += fmt::format("  {}:  # speed {}\n    clients:\n", Key(robot),
+      clients += fmt::format("  {}:  # speed {}\n    clients:\n", YamlText(robot),
                              run.clients.at(fit.client).speed);
     }
     robot_before = robot;
-    clients += fmt::format("      {}: {}\n", Key(fit.client.substr(slash + 1)), CostsOf(fit.costs));
+    clients +=
+        fmt::format("      {}: {}\n", YamlText(fit.client.substr(slash + 1)), CostsOf(fit.costs));
   }
   return text + (clients.empty() ? "robots: {}\n" : "robots:\n" + clients);
 }

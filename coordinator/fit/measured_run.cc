@@ -34,9 +34,11 @@ double CountIn(const Json& json, const char* key) {
 bool IsName(const std::string& name) {
   constexpr std::string_view kAllowed =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./";
+  constexpr std::size_t kLongest = 64;  // of each
   const std::size_t slash = name.find('/');
-  return slash != std::string::npos && slash == name.rfind('/') && slash > 0 &&
-         slash + 1 < name.size() && name.find_first_not_of(kAllowed) == std::string::npos;
+  return slash != std::string::npos && slash == name.rfind('/') && slash > 0 && slash <= kLongest &&
+         slash + 1 < name.size() && name.size() - slash - 1 <= kLongest &&
+         name.find_first_not_of(kAllowed) == std::string::npos;
 }
 
 LoadError NotCounted(const std::string& folder) {

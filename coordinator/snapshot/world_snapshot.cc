@@ -9,6 +9,7 @@
 
 #include "coordinator/snapshot/recorded_state.h"
 #include "coordinator/text/csv.h"
+#include "coordinator/text/yaml_text.h"
 
 namespace tcs::snapshot {
 namespace {
@@ -43,7 +44,8 @@ class Writer {
     for (const Json& body : scene_.at("bodies")) {
       const std::string name = body.at("name");
       const Numbers state = StateOf(name);
-      bodies += fmt::format("  {}: {{{}, {}}}\n", name, PoseText(state), VelocitiesText(state));
+      bodies +=
+          fmt::format("  {}: {{{}, {}}}\n", YamlText(name), PoseText(state), VelocitiesText(state));
     }
     for (const Json& model : scene_.at("models")) models += ModelText(model);
     return (bodies.empty() ? "" : "bodies:\n" + bodies) +
@@ -72,7 +74,7 @@ class Writer {
       parts.push_back("joints: {" + joints + "}");
     }
     if (parts.empty()) return {};
-    return fmt::format("  {}: {{{}}}\n", name, fmt::join(parts, ", "));
+    return fmt::format("  {}: {{{}}}\n", YamlText(name), fmt::join(parts, ", "));
   }
 
   std::string JointsText(const std::string& model, const Json& links) const {
@@ -88,7 +90,8 @@ class Writer {
                         "run can begin from there",
                         kind, joint, model)};
       }
-      text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", joint, List(found->second));
+      text +=
+          fmt::format("{}{}: {}", text.empty() ? "" : ", ", YamlText(joint), List(found->second));
     }
     return text;
   }

@@ -1,8 +1,9 @@
 #include "coordinator/trials/outcome.h"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "coordinator/text/csv.h"
 
 namespace tcs {
 
@@ -26,12 +27,7 @@ std::optional<TrialOutcome> OutcomeFromJson(const std::string& text, std::uint64
   }
 }
 
-std::string ReadText(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+std::string ReadText(const std::string& path) { return ReadFile(path).value_or(""); }
 
 std::optional<TrialOutcome> ReadOutcome(const std::string& folder, std::uint64_t seed) {
   return OutcomeFromJson(ReadText(folder + "/summary.json"), seed);

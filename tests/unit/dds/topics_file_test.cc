@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -18,6 +19,7 @@ namespace tcs::dds {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::EndsWith;
 using testing::HasSubstr;
 
 class TopicsFileTest : public testing::Test {
@@ -48,6 +50,14 @@ TEST_F(TopicsFileTest, SaysHowManyEndpointsWereAlike) {
   topics[0].endpoints[0].count = 300;
   ASSERT_EQ(WriteTopics(topics, Path()), "");
   EXPECT_EQ(std::get<0>(ReadTopics(folder_))[0].endpoints[0].count, 300);
+}
+
+TEST_F(TopicsFileTest, WhatIsNoFileIsRefusedAndNotWaitedFor) {
+  fs::create_directory(Path());
+  EXPECT_THAT(Complaint(), EndsWith("topics.json is no file that can be read; make the run again"));
+  fs::remove(Path());
+  ASSERT_EQ(mkfifo(Path().c_str(), 0600), 0);
+  EXPECT_THAT(Complaint(), EndsWith("topics.json is no file that can be read; make the run again"));
 }
 
 TEST_F(TopicsFileTest, ComesBackAsItWasInTheOrderOfNames) {

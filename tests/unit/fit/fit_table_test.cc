@@ -77,13 +77,13 @@ TEST(Fragment, IsAPieceOfAScenario) {
             "# What calls and allocations cost each client of chase of two, measured in measured.\n"
             "# By `tcsim fit`, for `tcsim run SCENARIO --accounting fixed --overlay THIS`.\n"
             "robots:\n"
-            "  \"hunter\":  # speed 1\n"
+            "  hunter:  # speed 1\n"
             "    clients:\n"
-            "      \"controller\": {fixed_call_cost: 1000ns}\n"
-            "      \"null\": {fixed_call_cost: 1000ns, fixed_allocation_cost: 2000ns}\n"
-            "  \"prey\":  # speed 0.5\n"
+            "      controller: {fixed_call_cost: 1000ns}\n"
+            "      'null': {fixed_call_cost: 1000ns, fixed_allocation_cost: 2000ns}\n"
+            "  prey:  # speed 0.5\n"
             "    clients:\n"
-            "      \"1.5\": {fixed_allocation_cost: 2000ns}\n");
+            "      '1.5': {fixed_allocation_cost: 2000ns}\n");
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ struct Tally {
 // Scenario files: loaded, but not run. A refusal begins with the file and the line.
 Tally FuzzScenarios(int count, std::uint64_t seed);
 
-// Result folders: made into a page. A refusal names the folder.
+// Result folders: made into a page, fitted, and given to each other command that looks at one. A
+// refusal names the folder.
 Tally FuzzResults(int count, std::uint64_t seed);
 
 // Robots' files, and their meshes: loaded, and moved on each engine that takes them. A refusal

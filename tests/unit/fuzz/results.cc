@@ -1,4 +1,7 @@
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -8,10 +11,15 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/cli/basics/exit_status.h"
+#include "coordinator/cli/tools.h"
 #include "coordinator/errors/visible.h"
 #include "coordinator/fit/fit_table.h"
 #include "coordinator/fit/fragment.h"
 #include "coordinator/fit/measured_run.h"
+#include "coordinator/port/unique_fd.h"
+#include "coordinator/report/live_page.h"
+#include "coordinator/report/live_run.h"
 #include "coordinator/report/page.h"
 #include "coordinator/report/read_results.h"
 #include "coordinator/report/write.h"
@@ -43,6 +51,23 @@ constexpr char kSummary[] = R"({
       "wait_status": 0, "calls": 300, "allocations": 0}}
 })";
 
+constexpr char kScene[] = R"({
+  "version": 1, "gravity_mps2": [0.0, 0.0, -9.81], "region_m": 10.0,
+  "bodies": [{"name": "a", "mass_kg": 1.0, "inertia_kgm2": [0.1, 0.1, 0.1]}],
+  "fixtures": [], "models": [], "sensors": [], "meshes": []
+})";
+
+constexpr char kTopics[] = R"({
+  "version": 1,
+  "topics": [{
+    "topic": "/odom", "type": "nav_msgs/msg/Odometry", "domain": 0, "samples": 31, "bytes": 22444,
+    "first_ns": 0, "last_ns": 300000000, "rate_hz": 99.9, "drops": 0,
+    "endpoints": [{
+      "kind": "writer", "process": "tcsim", "robot": "", "count": 1,
+      "qos": {"reliability": "reliable", "history": "keep_last", "depth": 10,
+              "durability": "volatile", "liveliness": "automatic"}}]}]
+})";
+
 std::string Bodies() {
   std::string text = "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps\n";
   for (int i = 0; i < 50; ++i) {
@@ -57,12 +82,17 @@ Files RunFiles(const std::string& folder) {
   std::string activations =
       "client,thread,cause,release_ns,start_ns,end_ns,charged_ns,calls,allocations\n";
   std::string dispatches = "row,virtual_start_ns,virtual_end_ns,real_start_ns,real_end_ns\n";
+  std::string responses =
+      "client,thread,cause,release_ns,start_ns,end_ns,deadline_ns,queued_ns,away_ns,executed_ns,"
+      "cores_ns,locks_ns,room_ns,rest_ns,whose\n";
   for (int i = 0; i < 40; ++i) {
     const std::string start = std::to_string(i * 1'000'000),
                       end = std::to_string(i * 1'000'000 + 9);
     activations += "r/planner,0,input," + start + "," + start + "," + end + ",400000,7,900\n" +
                    "r/controller,0,time," + start + "," + end + "," + end + ",1000,15,0\n" +
                    "r/planner,3,thread," + start + "," + start + "," + end + ",9,1,0\n";
+    responses += "r/controller,0,time," + start + "," + start + "," + end +
+                 ",10000000,4,0,1000,5,0,0,0,core:r/planner=5\n";
     dispatches += "r/planner #3," + start + "," + end + "," + start + "," + end + "\ndynamics," +
                   start + "," + end + "," + start + "," + end + "\n";
   }
@@ -70,6 +100,9 @@ Files RunFiles(const std::string& folder) {
           {folder + "/bodies.csv", Bodies()},
           {folder + "/activations.csv", activations},
           {folder + "/dispatches.csv", dispatches},
+          {folder + "/responses.csv", responses},
+          {folder + "/scene.json", kScene},
+          {folder + "/topics.json", kTopics},
           {folder + "/trace.json", "{\"traceEvents\":[]}"},
           {folder + "/tcsim.log", "tcsim: warning: so what\ntcsim: it \x1b[31mwent wrong\n"}};
 }
@@ -187,11 +220,50 @@ std::string Fit(const std::string& folder, const std::string& costs_path) {
   return error == nullptr ? "" : "what fit writes cannot be read: " + Visible(error->message);
 }
 
+// Does the command, which says what it has to say to nobody. What is wrong with its exit status.
+std::string Do(const ToolArguments& command, bool* refused) {
+  const UniqueFd nowhere(open("/dev/null", O_WRONLY | O_CLOEXEC));
+  dup2(nowhere.get(), STDOUT_FILENO);
+  dup2(nowhere.get(), STDERR_FILENO);
+  const int status = DoWithTools(command, nullptr);
+  *refused = status == kCannotRun;
+  return status >= kSucceeded && status <= kExpectationFailed
+             ? ""
+             : fmt::format("command {} ends with {}", command.index(), status);
+}
+
+// A page that is looked at while a run writes the folder.
+std::string Watch(const std::string& folder) {
+  report::LiveRun run(folder);
+  for (int look = 0; look < 3; ++look) run.Look();
+  const std::string page = report::LivePage({.title = folder}, run.NewsSince({}));
+  return page.empty() ? "the live page is empty" : "";
+}
+
+// The other commands that look at a folder.
+std::vector<ToolArguments> CommandsOn(const fs::path& folder, const fs::path& sound) {
+  return {CompareArguments{.before = sound, .after = folder},
+          CompareArguments{.before = folder, .after = sound, .as_json = true},
+          ExplainArguments{.folder = folder, .client = {}, .at = {}},
+          SnapshotArguments{.from = folder, .out = {}},
+          SnapshotArguments{.from = folder.string() + "@0.2s", .out = {}},
+          TopicsArguments{.folder = folder, .with_qos = true},
+          TraceArguments{.folder = folder, .out = folder.string() + "-trace.json.gz"}};
+}
+
+void Write(const Files& files, const fs::path& root) {
+  for (const auto& [name, text] : files) {
+    fs::create_directories((root / name).parent_path());
+    std::ofstream(root / name, std::ios::binary) << text;
+  }
+}
+
 }  // namespace
 
 Tally FuzzResults(int count, std::uint64_t seed) {
   std::string made = fs::temp_directory_path() / "tcs_fuzz.XXXXXX";
   const fs::path root = mkdtemp(made.data());
+  Write(RunFiles("sound"), root);
   Tally tally;
   for (int number = 0; number < count; ++number) {
     Mutator mutator(seed * 1'000'003 + static_cast<std::uint64_t>(number), ResultTokens());
@@ -204,10 +276,7 @@ Tally FuzzResults(int count, std::uint64_t seed) {
       file->second = mutator.Damage(file->second, texts);
       damaged += "== " + file->first + "\n" + file->second;
     }
-    for (const auto& [name, text] : files) {
-      fs::create_directories((root / name).parent_path());
-      std::ofstream(root / name, std::ios::binary) << text;
-    }
+    Write(files, root);
     if (mutator.OneIn(6)) {
       const auto file = std::next(files.begin(), static_cast<int>(mutator.Below(files.size())));
       PutOther(&mutator, root / file->first);
@@ -218,6 +287,12 @@ Tally FuzzResults(int count, std::uint64_t seed) {
     if (wrong.has_value()) SayWrong("results", number, *wrong, damaged);
     const auto unfit = tally.Count([&](bool*) { return Fit(root / "run", root / "costs.yaml"); });
     if (unfit.has_value()) SayWrong("results", number, *unfit, damaged);
+    const auto unseen = tally.Count([&](bool*) { return Watch(root / "run"); });
+    if (unseen.has_value()) SayWrong("results", number, *unseen, damaged);
+    for (const ToolArguments& command : CommandsOn(root / "run", root / "sound")) {
+      const auto failed = tally.Count([&](bool* refused) { return Do(command, refused); });
+      if (failed.has_value()) SayWrong("results", number, *failed, damaged);
+    }
     fs::remove_all(root / "run");
   }
   fs::remove_all(root);

@@ -72,6 +72,15 @@ class SnapshotTest : public testing::Test {
   std::string folder_;
 };
 
+TEST_F(SnapshotTest, AnyNameThatARobotMayHaveIsReadBack) {
+  const std::string scene = Scene("revolute");
+  const std::string name = "joint: it's #1 [x]";
+  Write("scene.json", std::string(scene).replace(scene.find("elbow"), 5, name));
+  Write("joints.csv",
+        "time_s,joint,position,velocity,effort\n0.000000000,arm/" + name + ",0.5,0,0\n");
+  EXPECT_EQ(At(0)["models"]["arm"]["joints"][name][0].as<std::string>(), "0.5");
+}
+
 TEST_F(SnapshotTest, SaysWhatTheTablesSay) {
   const YAML::Node world = At(10'000'000);
   EXPECT_EQ(world["bodies"]["ship"]["position"][1].as<std::string>(), "-2.2e-17");
