@@ -96,7 +96,9 @@ std::variant<TrialsRecord, std::string> RecordFromJson(const std::string& text) 
     json.at("fingerprint").at("programs").get_to(record.programs);
     return record;
   } catch (const Json::exception& error) {
-    return std::string(error.what());
+    // Without the library's number of it, "[json.exception.parse_error.101] ".
+    const std::string what = error.what();
+    return what.substr(what.find("] ") + 2);
   }
 }
 
