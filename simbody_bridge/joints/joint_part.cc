@@ -99,7 +99,8 @@ void JointPart::FindSlips(Reduced* reduced) {
     if (slip == Slip::kHeld) resting.push_back(column);
   }
   if (resting.empty()) return;
-  const VectorXd rates = reduced->by_mass(resting, Eigen::all) * reduced->force;
+  const MatrixXd by_mass = reduced->by_mass(resting, Eigen::all);
+  const VectorXd rates = by_mass * reduced->force;
   VectorXd hold;
   FindHolds(reduced->by_mass(resting, resting), rates, bounds_(resting), &hold);
   for (std::size_t i = 0; i < resting.size(); ++i) {
