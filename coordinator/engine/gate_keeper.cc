@@ -8,6 +8,7 @@
 #include "coordinator/os/trap.h"
 #include "coordinator/port/proc_files.h"
 #include "coordinator/port/thread_signals.h"
+#include "coordinator/port/traps.h"
 #include "coordinator/tasks/cpu_clock.h"
 #include "coordinator/tasks/run_clock.h"
 
@@ -55,6 +56,17 @@ bool IsAwakeAtGate(const Task& task) {
   return task.state == TaskState::kWaiting && task.slot >= 0 && task.parked && task.trap_id == 0 &&
          !task.process->expelled && ThreadState(task.tid) == 'R';
 }
+
+// The kernel has ended the trapped call in which it waits, though nobody has answered that: for a
+// signal, whose handler it runs. Later kernels do so only for signals that end the process
+// (kHoldsSignals in os/trap.cc).
+bool HasLostItsCall(const Task& task) {
+  return task.state == TaskState::kWaiting && task.slot >= 0 && task.trap_id != 0 &&
+         !task.process->expelled && !HasAnswerToTake(task.trap_listener, task.trap_id) &&
+         ThreadState(task.tid) == 'R';
+}
+
+bool IsOnWayToHandler(const Task& task) { return IsAwakeAtGate(task) || HasLostItsCall(task); }
 
 }  // namespace
 
@@ -159,10 +171,11 @@ Reactor::Found GateKeeper::BringOthersToGates(const Task& sender, Moment moment)
 }
 
 // Before and after a signal is sent. A thread that has said that it waits, and has yet to fall
-// asleep, may run the handler at once: then no signal is there for it any more, and only the thread
-// itself can tell that its wait is over. The world must not go on past that.
+// asleep, may run the handler at once, as may one in a trapped call on kernels that end such calls
+// for signals: then no signal is there for it any more, and only the thread itself can tell that
+// its wait is over. The world must not go on past that.
 Reactor::Found GateKeeper::AwaitSleepAtGates(Moment moment) {
-  return AwaitThreads(moment, {kShortGateLook, kMostWayFromWait}, IsAwakeAtGate, [](Task&) {});
+  return AwaitThreads(moment, {kShortGateLook, kMostWayFromWait}, IsOnWayToHandler, [](Task&) {});
 }
 
 // A thread that was looked at for a signal, and had none, may be running the handler already.

@@ -58,6 +58,6 @@ sentence "make the run again with --for-fit" "$tcsim" fit "$out/plain"
 sentence "charges were set, not measured" "$tcsim" fit "$out/first"
 sentence "has no summary.json" "$tcsim" fit "$out"
 sentence "is not a file" "$tcsim" fit "$out/measured" --out "$out"
-sed -i 's/"planner"/"planer"/' "$out/costs.yaml"
+sed -i 's/ planner:/ planer:/' "$out/costs.yaml"
 sentence "costs.yaml:7: there is no 'planer' in robots.predator.clients" \
   "$tcsim" run "$example" --overlay "$out/costs.yaml" --check
