@@ -129,8 +129,7 @@ LoadResult<std::vector<TopicReport>> ReadTopics(const std::string& folder) {
   if (!std::filesystem::is_directory(folder, error)) {
     return LoadError{"there is no folder '" + folder + "'; give one that tcsim run has written"};
   }
-  if (std::filesystem::symlink_status(path, error).type() ==
-      std::filesystem::file_type::not_found) {
+  if (!std::filesystem::exists(path, error)) {
     return LoadError{
         "'" + folder +
         "' has no topics.json: no program of the run used DDS in shared memory, or the run "

@@ -50,23 +50,16 @@ bool MayCompute(const Task& task) {
          !task.executes && !task.process->expelled;
 }
 
-// It waits at its gate, as it has said, but does not sleep there: it is on its way, or a handler
-// that it runs will end the wait.
-bool IsAwakeAtGate(const Task& task) {
-  return task.state == TaskState::kWaiting && task.slot >= 0 && task.parked && task.trap_id == 0 &&
-         !task.process->expelled && ThreadState(task.tid) == 'R';
+// It waits, as it has said, and is awake: it is on its way to sleep at its gate, or a handler that
+// it runs will end the wait. Or the kernel has ended the trapped call in which it waits, though
+// nobody has answered that: for a signal, whose handler it runs. Later kernels do so only for
+// signals that end the process (kHoldsSignals in os/trap.cc).
+bool IsAwakeInWait(const Task& task) {
+  if (task.state != TaskState::kWaiting || task.slot < 0 || task.process->expelled) return false;
+  const bool may_be =
+      task.trap_id == 0 ? task.parked : !HasAnswerToTake(task.trap_listener, task.trap_id);
+  return may_be && ThreadState(task.tid) == 'R';
 }
-
-// The kernel has ended the trapped call in which it waits, though nobody has answered that: for a
-// signal, whose handler it runs. Later kernels do so only for signals that end the process
-// (kHoldsSignals in os/trap.cc).
-bool HasLostItsCall(const Task& task) {
-  return task.state == TaskState::kWaiting && task.slot >= 0 && task.trap_id != 0 &&
-         !task.process->expelled && !HasAnswerToTake(task.trap_listener, task.trap_id) &&
-         ThreadState(task.tid) == 'R';
-}
-
-bool IsOnWayToHandler(const Task& task) { return IsAwakeAtGate(task) || HasLostItsCall(task); }
 
 }  // namespace
 
@@ -175,7 +168,7 @@ Reactor::Found GateKeeper::BringOthersToGates(const Task& sender, Moment moment)
 // for signals: then no signal is there for it any more, and only the thread itself can tell that
 // its wait is over. The world must not go on past that.
 Reactor::Found GateKeeper::AwaitSleepAtGates(Moment moment) {
-  return AwaitThreads(moment, {kShortGateLook, kMostWayFromWait}, IsOnWayToHandler, [](Task&) {});
+  return AwaitThreads(moment, {kShortGateLook, kMostWayFromWait}, IsAwakeInWait, [](Task&) {});
 }
 
 // A thread that was looked at for a signal, and had none, may be running the handler already.

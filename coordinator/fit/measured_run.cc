@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 
 #include "coordinator/report/text.h"
+#include "coordinator/scenario/name.h"
 #include "coordinator/text/csv.h"
 
 namespace tcs::fit {
@@ -31,14 +33,10 @@ double CountIn(const Json& json, const char* key) {
 }
 
 // ROBOT/CLIENT, as scenarios have them.
-bool IsName(const std::string& name) {
-  constexpr std::string_view kAllowed =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./";
-  constexpr std::size_t kLongest = 64;  // of each
+bool IsClient(std::string_view name) {
   const std::size_t slash = name.find('/');
-  return slash != std::string::npos && slash == name.rfind('/') && slash > 0 && slash <= kLongest &&
-         slash + 1 < name.size() && name.size() - slash - 1 <= kLongest &&
-         name.find_first_not_of(kAllowed) == std::string::npos;
+  return slash != std::string_view::npos && IsName(name.substr(0, slash)) &&
+         IsName(name.substr(slash + 1));
 }
 
 LoadError NotCounted(const std::string& folder) {
@@ -68,7 +66,7 @@ LoadResult<MeasuredRun> FromSummary(const std::string& folder) {
     json.at("scenario").get_to(run.scenario);
     for (const auto& [name, entry] : json.at("clients").items()) {
       if (!entry.contains("calls") || !entry.contains("allocations")) return NotCounted(folder);
-      if (!IsName(name)) return LoadError{path + " is damaged; make the run again"};
+      if (!IsClient(name)) return LoadError{path + " is damaged; make the run again"};
       MeasuredClient& client = run.clients[name];
       client.whole = {CountIn(entry, "charged_ns"), CountIn(entry, "calls"),
                       CountIn(entry, "allocations")};

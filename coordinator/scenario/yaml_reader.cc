@@ -13,6 +13,7 @@
 
 #include "coordinator/errors/nearest.h"
 #include "coordinator/scenario/duration.h"
+#include "coordinator/scenario/name.h"
 
 namespace tcs {
 namespace {
@@ -335,16 +336,10 @@ YamlValue ParseYaml(const std::string& file, const std::string& text,
 }
 
 void CheckName(const YamlMap::Entry& entry) {
-  constexpr std::string_view kAllowed =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
-  const std::string& name = entry.key;
-  const bool fine = !name.empty() && name.size() <= 64 && name[0] != '.' && name[0] != '-' &&
-                    name.find_first_not_of(kAllowed) == std::string::npos;
-  if (!fine) {
-    entry.value.At(entry.key_place)
-        .FailPlainly(InQuotes(name) +
-                     " is not a name; use up to 64 letters, digits, '_', '-' and '.'");
-  }
+  if (IsName(entry.key)) return;
+  entry.value.At(entry.key_place)
+      .FailPlainly(InQuotes(entry.key) +
+                   " is not a name; use up to 64 letters, digits, '_', '-' and '.'");
 }
 
 }  // namespace tcs

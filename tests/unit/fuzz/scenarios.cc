@@ -170,8 +170,7 @@ Tally FuzzScenarios(int count, std::uint64_t seed) {
       const auto overlay = LoadOverlay(path);
       const auto* error = std::get_if<LoadError>(&overlay);
       *no_overlay = error != nullptr;
-      const bool is_told = error == nullptr || NamesItsPlace(error->message, path);
-      return is_told ? "" : "a refusal does not say where: " + Visible(error->message);
+      return error == nullptr ? "" : WrongWith(*error, path);
     });
     if (lost.has_value()) SayWrong("scenarios", number, *lost, text);
     if (wrong.has_value()) {
