@@ -170,8 +170,7 @@ std::int64_t RawTimers::PosixTimer(Task& task, const TrappedCall& call) {
     case SYS_timer_gettime:
       return Write(task, call.args[1], Exchange(task, found, false, 0, 0)) ? 0 : -EFAULT;
     case SYS_timer_getoverrun:
-      TimerSignals::NoteAccepted(*task.process);
-      return timers.Overruns(found.id);
+      return calls_.OverrunsAt(*task.process, found.id, task.reached);
     default:  // SYS_timer_delete
       TimerCalls::Delete(*task.process, found.id);
       return 0;

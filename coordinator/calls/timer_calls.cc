@@ -125,8 +125,7 @@ bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& n
     } else {
       timers.AcceptAt(id, task.reached, TimerSignals::IsPending(process, id));
     }
-    TimerSignals::NoteAccepted(process);
-    task.reply[0] = timers.Overruns(id);
+    task.reply[0] = OverrunsAt(process, id, task.reached);
     return wrote;
   }
   const bool wrote = BringUpToDate(process, task, id);
@@ -138,6 +137,11 @@ bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& n
   const auto fd = process.timer_fds.find(id);
   if (fd != process.timer_fds.end()) ForgetExpirations(fd->second.get());
   return wrote;
+}
+
+std::int64_t TimerCalls::OverrunsAt(Process& process, std::int64_t id, VirtualTime now) const {
+  signals_.NoteAccepted(process, now);
+  return process.timers.Overruns(id);
 }
 
 // What has run out by the time of the call is there when it returns.
@@ -167,7 +171,7 @@ ProcessTimers::CpuUsed TimerCalls::CpuUsedBy(const Task& task) {
 void TimerCalls::ExpireCpu(const Task& ran) {
   Process& process = *ran.process;
   if (!process.timers.HasCpuTimers()) return;
-  TimerSignals::NoteAccepted(process);
+  signals_.NoteAccepted(process, ran.reached);
   TellDescriptors(process, process.timers.ExpireCpu(CpuUsedBy(ran)));
   process.robot->keeps_timer_signals |= process.timers.HasSignals();
 }

@@ -27,8 +27,11 @@ class TimerCalls {
   // written to.
   bool FireDue(Robot& robot, VirtualTime now);
   // Timers on processor time run out while their process runs; it is told at its next dispatch.
-  static void ExpireCpu(const Task& ran);
+  void ExpireCpu(const Task& ran);
   static ProcessTimers::CpuUsed CpuUsedBy(const Task& task);
+
+  // The overruns of the timer's signal that has been accepted last by `now`.
+  std::int64_t OverrunsAt(Process& process, std::int64_t id, VirtualTime now) const;
 
   static void Delete(Process& process, std::int64_t id);
   // A process's timer_create timers end when it executes another program.

@@ -113,19 +113,13 @@ void TimerSignals::SendTo(const Task& task) {
   }
 }
 
-void TimerSignals::NoteAccepted(Process& process) {
-  for (const ProcessTimers::SentSignal& sent : process.timers.SentSignals()) {
-    if (!MayBePending(process, sent)) process.timers.Accept(sent.timer_id);
-  }
-}
-
 void TimerSignals::NoteAccepted(Process& process, VirtualTime now) const {
   for (const ProcessTimers::SentSignal& sent : process.timers.SentSignals()) {
     if (MayBePending(process, sent)) continue;
     if (IsLost(process, sent.number, sent.to)) {
       process.timers.AcceptAt(sent.timer_id, now, false);
     } else {
-      process.timers.Accept(sent.timer_id);
+      process.timers.Accept(sent.timer_id, now);
     }
   }
 }

@@ -22,11 +22,10 @@ class TimerSignals {
   void Route(Process& process, Moment moment);
   // Sends the signals that have waited for the dispatch of this thread, which is now.
   static void SendTo(const Task& task);
-  // Finds out which timers' signals have been accepted. While one of a signal's number is pending
-  // where it was sent to it counts as not: whose it is cannot be seen.
-  static void NoteAccepted(Process& process);
-  // The same, and what the kernel has dropped once it was no longer blocked, for it does nothing,
-  // has for overruns what has run out until `now`.
+  // Finds out which timers' signals have been accepted by `now`. While one of a signal's number is
+  // pending where it was sent to it counts as not: whose it is cannot be seen. What the kernel has
+  // dropped once it was no longer blocked, for it does nothing, has for overruns what has run out
+  // until `now`.
   void NoteAccepted(Process& process, VirtualTime now) const;
   // Whether the timer's signal that was sent last may be pending still.
   static bool IsPending(const Process& process, std::int64_t timer_id);

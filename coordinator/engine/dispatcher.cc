@@ -274,7 +274,7 @@ void Dispatcher::EndTurn(Task& task) {
 
 void Dispatcher::TellOthersOf(Task& task, Moment call, bool looks_again) {
   const Moment stop{task.cpu->progress};
-  TimerCalls::ExpireCpu(task);
+  all_.timers.ExpireCpu(task);
   if (task.follow_up != FollowUp::kNone) all_.follow_ups.Do(task, call, looks_again);
   if (!run_.turn.HasSpoken()) all_.spawns.TurnEnds(task, stop);
   task.process->timers.EndRests(stop.at);

@@ -295,11 +295,16 @@ std::vector<ProcessTimers::SentSignal> ProcessTimers::SentSignals() const {
   return sent;
 }
 
-void ProcessTimers::Accept(Id id) {
+void ProcessTimers::Accept(Id id, VirtualTime now) {
   Timer* timer = Find(id);
   if (timer == nullptr || !timer->is_signal_underway) return;
+  if (timer->IsShort() && !timer->IsOnCpuTime()) {
+    // What runs out at this instant has a signal of its own.
+    timer->AddOverruns(timer->TakeExpirations(OwnTimeOf(now, timer->lead).ns() - 1));
+  }
   timer->Accept();
   timer->was_seen_accepted = true;
+  FindNext();
 }
 
 void ProcessTimers::Lost(Id id) {

@@ -135,7 +135,9 @@ class ProcessTimers {
   void NoteSent(const TimerSignal& signal, pid_t to);
   // Of timer_create's timers: the signals that were sent and not yet seen accepted.
   std::vector<SentSignal> SentSignals() const;
-  void Accept(Id id);
+  // Seen at `now` to be accepted. What a short interval's timer has run out before, while nobody
+  // looked at it, belongs to the accepted signal.
+  void Accept(Id id, VirtualTime now);
   // It did nothing, and nobody has accepted it: the overruns are those of the signal before.
   void Lost(Id id);
   // The same by the thread that has just accepted the signal: the expirations until now belong to

@@ -132,7 +132,7 @@ TEST_F(ProcessTimersTest, WhatIsNoTimerIsLeftAlone) {
   constexpr ProcessTimers::Id kNone = 77;
   timers_.Set(kNone, {kMs, kMs}, {});
   timers_.Delete(kNone);
-  timers_.Accept(kNone);
+  timers_.Accept(kNone, RobotTime(kMs));
   timers_.AcceptAt(kNone, RobotTime(kMs), false);
   EXPECT_FALSE(timers_.KindOf(kNone).has_value());
   EXPECT_EQ(timers_.Get(kNone).next_ns, 0);
@@ -197,13 +197,13 @@ TEST_F(ProcessTimersTest, WhatRunsOutBeforeItsSignalIsAcceptedIsOverruns) {
   timers_.Expire(RobotTime(7 * kMs));
   EXPECT_FALSE(timers_.HasSignals());
   EXPECT_EQ(timers_.Overruns(id), 0);  // none was accepted
-  timers_.Accept(id);
+  timers_.Accept(id, RobotTime(7 * kMs));
   EXPECT_EQ(timers_.Overruns(id), 6);
   // The next one is a signal of its own.
   timers_.Expire(RobotTime(8 * kMs));
   EXPECT_TRUE(timers_.HasSignals());
   EXPECT_EQ(timers_.Overruns(id), 6);
-  timers_.Accept(id);
+  timers_.Accept(id, RobotTime(8 * kMs));
   EXPECT_EQ(timers_.Overruns(id), 0);
 }
 
@@ -217,7 +217,7 @@ TEST_F(ProcessTimersTest, OnlySentSignalsCanHaveBeenAccepted) {
   EXPECT_EQ(sent[0].timer_id, id);
   EXPECT_EQ(sent[0].number, SIGUSR1);
   EXPECT_EQ(sent[0].to, kThread);
-  timers_.Accept(id);
+  timers_.Accept(id, RobotTime(kMs));
   EXPECT_TRUE(timers_.SentSignals().empty());
 }
 
@@ -238,7 +238,7 @@ TEST_F(ProcessTimersTest, WhoSaysLateWhatItAcceptedDoesNotAcceptTheNextOne) {
   const auto id = Armed(kPosix, kMs, kMs);
   timers_.Expire(RobotTime(9 * kMs));
   SendAll();
-  timers_.Accept(id);
+  timers_.Accept(id, RobotTime(10 * kMs));
   timers_.Expire(RobotTime(10 * kMs));
   SendAll();
   timers_.AcceptAt(id, RobotTime(10 * kMs), true);
@@ -248,12 +248,28 @@ TEST_F(ProcessTimersTest, WhoSaysLateWhatItAcceptedDoesNotAcceptTheNextOne) {
   EXPECT_EQ(timers_.Overruns(id), 2);
 }
 
+// A timer of a short interval rests while its thread sleeps. What it has run out meanwhile belongs
+// to the signal that was pending, though the thread has not said that it took it.
+TEST_F(ProcessTimersTest, WhatAShortOneRanOutMeanwhileIsOfTheSignalThatWasPending) {
+  const auto id = Armed(kPosix, kMs, 1'000);
+  timers_.Expire(RobotTime(kMs));
+  SendAll();
+  timers_.EndRests(RobotTime(9 * kMs));  // the thread runs again, and takes the signal
+  timers_.Accept(id, RobotTime(9 * kMs));
+  EXPECT_EQ(timers_.Overruns(id), 7'999);
+  EXPECT_EQ(CountAt(id, 9 * kMs), 1);  // the one of this instant has a signal of its own
+  EXPECT_TRUE(timers_.HasSignals());
+  SendAll();
+  timers_.AcceptAt(id, RobotTime(9 * kMs), true);  // it says so now, and of the first one
+  EXPECT_EQ(timers_.Overruns(id), 7'999);
+}
+
 TEST_F(ProcessTimersTest, OverrunsAreNoMoreThanAnIntHolds) {
   const auto id = Armed(kPosix, 1, 1);
   timers_.Expire(RobotTime(1'000'000 * kMs));
   EXPECT_EQ(timers_.TakeSignals().at(0).overruns, INT_MAX);
   timers_.Expire(RobotTime(kNeverNs - 1));
-  timers_.Accept(id);
+  timers_.Accept(id, RobotTime(kNeverNs));
   EXPECT_EQ(timers_.Overruns(id), INT_MAX);
 }
 
@@ -264,7 +280,7 @@ TEST_F(ProcessTimersTest, SetAnewItsOverrunsAreForgottenAndASignalUnderwayIsNot)
   EXPECT_TRUE(timers_.HasSignals());
   SendAll();
   EXPECT_TRUE(timers_.SentSignals().empty());
-  timers_.Accept(id);
+  timers_.Accept(id, RobotTime(3 * kMs));
   EXPECT_EQ(timers_.Overruns(id), 0);
 }
 
@@ -286,7 +302,7 @@ TEST_F(ProcessTimersTest, DeletedWithASentSignalNobodyWaitsForItsAcceptance) {
   timers_.NoteSent(signals[0], kThread);
   timers_.Delete(id);
   EXPECT_TRUE(timers_.SentSignals().empty());
-  timers_.Accept(id);
+  timers_.Accept(id, RobotTime(kMs));
   timers_.NoteSent(signals[0], kThread);
   EXPECT_FALSE(timers_.KindOf(id).has_value());
   EXPECT_NE(timers_.Create(kPosix), id);  // a number is not given twice
@@ -318,7 +334,7 @@ TEST_F(ProcessTimersTest, OverrunsOfALostSignalAreNobodys) {
   const auto id = Armed(kPosix, 10 * kMs, 10 * kMs);
   timers_.Expire(RobotTime(35 * kMs));
   SendAll();
-  timers_.Accept(id);
+  timers_.Accept(id, RobotTime(35 * kMs));
   EXPECT_EQ(timers_.Overruns(id), 2);
   timers_.Expire(RobotTime(95 * kMs));
   SendAll();
