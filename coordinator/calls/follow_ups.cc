@@ -37,8 +37,8 @@ void FollowUps::Do(Task& task, Moment call, bool last) {
     case FollowUp::kTerminals:
       objects_.FlushTerminals(call);
       break;
-    case FollowUp::kBirths:
-      spawns_.LookForBirths(task, call);
+    case FollowUp::kCreations:
+      spawns_.LookForCreations(task, call);
       break;
     case FollowUp::kContinued:
       if (Process* parent = run_.table.LivingProcess(task.process->parent); parent != nullptr) {

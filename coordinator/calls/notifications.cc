@@ -69,7 +69,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
   const Moment moment{task.reached};
   bool looks_again = false;
   if (task.process->expelled) {
-    parts_.expulsion.AwaitDeath(task);
+    parts_.expulsion.AwaitExit(task);
     return false;
   }
   if (const char* what = SlotCheck::WhatIsImpossible(note); what != nullptr) {

@@ -15,7 +15,7 @@ namespace tcs {
 namespace {
 
 // Of what a program says that it will tell of, and never does.
-constexpr std::size_t kMostBirths = 64;
+constexpr std::size_t kMostCreations = 64;
 
 // A child that acts in its parent's place. One of a program without the shim does not: nothing of
 // the parent's is in it but the memory.
@@ -35,19 +35,19 @@ void Spawns::Begin(Task& maker, const TrappedCall& call) {
   if (!made.has_value()) return;
   const bool runs_beside = !made->HasOwnStorage() && !made->WaitsForChild();
   if (runs_beside && maker.slot >= 0) SlotOf(maker).clock.shares_storage = 1;
-  if (maker.births.size() >= kMostBirths) maker.births.clear();
+  if (maker.creations.size() >= kMostCreations) maker.creations.clear();
   const bool is_announced = IsAnnounced(maker);
-  maker.births.push_back({*made, is_announced});
+  maker.creations.push_back({*made, is_announced});
   if (is_announced || ActsForParent(maker, *made)) return;
-  maker.follow_up = FollowUp::kBirths;
+  maker.follow_up = FollowUp::kCreations;
   maker.in_vfork = maker.expects_kernel = made->WaitsForChild();
 }
 
 bool Spawns::HasMadeChild(Task& maker, Moment moment) {
-  LookForBirths(maker, moment);
+  LookForCreations(maker, moment);
   // A child of the maker's parent may never be found (TakeInChild).
-  return std::none_of(maker.births.begin(), maker.births.end(), [](const Birth& birth) {
-    return birth.call.WaitsForChild() && (birth.call.flags & CLONE_PARENT) == 0;
+  return std::none_of(maker.creations.begin(), maker.creations.end(), [](const Creation& creation) {
+    return creation.call.WaitsForChild() && (creation.call.flags & CLONE_PARENT) == 0;
   });
 }
 
@@ -59,9 +59,10 @@ bool Spawns::IsUnborn(pid_t tid, Moment moment) {
   if (process == nullptr) return false;
   bool is_expected = false;
   for (Task* maker : run_.table.ThreadsOf(*process)) {
-    LookForBirths(*maker, moment);
-    is_expected |= std::any_of(maker->births.begin(), maker->births.end(),
-                               [](const Birth& birth) { return birth.call.MakesThread(); });
+    LookForCreations(*maker, moment);
+    is_expected |=
+        std::any_of(maker->creations.begin(), maker->creations.end(),
+                    [](const Creation& creation) { return creation.call.MakesThread(); });
   }
   return is_thread && is_expected && run_.table.Living(tid) == nullptr;
 }
@@ -73,8 +74,9 @@ Task* Spawns::ActsFor(pid_t tid) {
   if (parent == nullptr) return nullptr;
   const auto acts = [&parent](const Task* maker) {
     return ThreadState(maker->tid) == 'D' &&
-           std::any_of(maker->births.begin(), maker->births.end(),
-                       [&](const Birth& birth) { return ActsForParent(*maker, birth.call); });
+           std::any_of(
+               maker->creations.begin(), maker->creations.end(),
+               [&](const Creation& creation) { return ActsForParent(*maker, creation.call); });
   };
   for (Task* maker : run_.table.ThreadsOf(*parent)) {
     if (acts(maker)) return maker;
@@ -84,20 +86,20 @@ Task* Spawns::ActsFor(pid_t tid) {
 
 // `is_done`: of what is not found there will be nothing.
 void Spawns::TakeIn(Task& maker, Moment moment, bool announced_too, bool is_done) {
-  if (maker.births.empty()) return;
-  std::vector<Birth> left;
-  for (const Birth& birth : std::exchange(maker.births, {})) {
-    const CloneCall& call = birth.call;
+  if (maker.creations.empty()) return;
+  std::vector<Creation> left;
+  for (const Creation& creation : std::exchange(maker.creations, {})) {
+    const CloneCall& call = creation.call;
     // While that acts for its parent, whatever it says is said as by the parent.
     const bool acts = ActsForParent(maker, call) && (!is_done || ThreadState(maker.tid) == 'D');
     const auto take_in = [&] {
       return call.MakesThread() ? TakeInThread(maker, call, moment)
                                 : TakeInChild(maker, call, moment);
     };
-    const bool is_left = acts || (birth.is_announced && !announced_too);
-    if (is_left || (!take_in() && !is_done)) left.push_back(birth);
+    const bool is_left = acts || (creation.is_announced && !announced_too);
+    if (is_left || (!take_in() && !is_done)) left.push_back(creation);
   }
-  maker.births.insert(maker.births.begin(), left.begin(), left.end());
+  maker.creations.insert(maker.creations.begin(), left.begin(), left.end());
 }
 
 bool Spawns::IsNew(const Task& maker, pid_t tid) const {
@@ -117,8 +119,8 @@ pid_t Spawns::ThreadOf(const Task& maker, const CloneCall& call) const {
   if (const pid_t tid = told(call); tid != 0) return tid;
   for (const pid_t tid : ThreadsOf(maker.process->pid)) {
     const bool is_anothers =
-        std::any_of(maker.births.begin(), maker.births.end(),
-                    [&](const Birth& birth) { return told(birth.call) == tid; });
+        std::any_of(maker.creations.begin(), maker.creations.end(),
+                    [&](const Creation& creation) { return told(creation.call) == tid; });
     if (!is_anothers && IsNew(maker, tid)) return tid;
   }
   return 0;
@@ -126,14 +128,14 @@ pid_t Spawns::ThreadOf(const Task& maker, const CloneCall& call) const {
 
 Task& Spawns::AddThread(Task& maker, pid_t tid, VirtualTime at) {
   parts_.executor.Hold(tid);
-  Task& thread = parts_.births.AddThread(*maker.process, tid, at);
+  Task& thread = parts_.thread_creation.AddThread(*maker.process, tid, at);
   parts_.scheduling.Inherit(thread, maker);
   return thread;
 }
 
 Task& Spawns::AddChild(Task& maker, pid_t pid, VirtualTime at) {
   parts_.executor.Hold(pid);
-  Task& child = parts_.births.AddChild(pid, ParentOf(pid), *maker.process, at);
+  Task& child = parts_.thread_creation.AddChild(pid, ParentOf(pid), *maker.process, at);
   parts_.scheduling.Inherit(child, maker);
   return child;
 }
@@ -188,13 +190,13 @@ void Spawns::Announced(Task& maker, const shm::Notification& note) {
 void Spawns::AnnouncedThread(Task& maker, const shm::Notification& note) {
   const auto tls = static_cast<std::uint64_t>(note.args[0]);
   Task* thread = nullptr;
-  const auto is_it = [tls](const Birth& birth) {
-    return birth.call.MakesThread() && birth.call.tls == tls;
+  const auto is_it = [tls](const Creation& creation) {
+    return creation.call.MakesThread() && creation.call.tls == tls;
   };
-  const auto found = std::find_if(maker.births.begin(), maker.births.end(), is_it);
-  if (found != maker.births.end()) {
+  const auto found = std::find_if(maker.creations.begin(), maker.creations.end(), is_it);
+  if (found != maker.creations.end()) {
     const CloneCall call = found->call;
-    std::erase_if(maker.births, is_it);
+    std::erase_if(maker.creations, is_it);
     const pid_t tid = ThreadOf(maker, call);
     if (tid != 0) thread = &AddThread(maker, tid, maker.reached);
   } else {
@@ -214,11 +216,11 @@ void Spawns::AnnouncedThread(Task& maker, const shm::Notification& note) {
 // Only a child of its own: with CLONE_PARENT its parent's. It has not been waited for, so that its
 // number is nobody else's.
 void Spawns::AnnouncedProcess(Task& maker, pid_t pid) {
-  const auto is_it = [](const Birth& birth) {
-    return birth.is_announced && !birth.call.MakesThread();
+  const auto is_it = [](const Creation& creation) {
+    return creation.is_announced && !creation.call.MakesThread();
   };
-  const auto found = std::find_if(maker.births.begin(), maker.births.end(), is_it);
-  if (found != maker.births.end()) maker.births.erase(found);
+  const auto found = std::find_if(maker.creations.begin(), maker.creations.end(), is_it);
+  if (found != maker.creations.end()) maker.creations.erase(found);
   const Process& of = *maker.process;
   if (of.pid_namespace != 0) pid = ChildByOwnNumber(of.pid, pid);
   if (pid <= 0 || run_.table.LivingProcess(pid) != nullptr || run_.table.Living(pid) != nullptr)

@@ -1,4 +1,4 @@
-// New threads and processes: they are known from their births on, and held until their first
+// New threads and processes: they are known from their creation on, and held until their first
 // dispatch.
 //
 // Whoever makes one does so by a trapped call. What the shim has made it tells of next
@@ -17,8 +17,8 @@
 #include "coordinator/calls/scheduling_calls.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/processes/bare_programs.h"
-#include "coordinator/processes/births.h"
 #include "coordinator/processes/registration.h"
+#include "coordinator/processes/thread_creation.h"
 #include "coordinator/processes/unknown_children.h"
 #include "coordinator/processes/unmanaged_threads.h"
 #include "coordinator/tasks/moment.h"
@@ -32,7 +32,7 @@ class Spawns {
   // The parts that it needs. They outlive it.
   struct Parts {
     Executor& executor;
-    Births& births;
+    ThreadCreation& thread_creation;
     Registration& registration;
     SchedulingCalls& scheduling;
     BarePrograms& bare_programs;
@@ -47,7 +47,7 @@ class Spawns {
   // The thread makes one by that call, which the kernel carries out next.
   static void Begin(Task& maker, const TrappedCall& call);
   // The kernel may have made it by now. What the shim tells of may still be told.
-  void LookForBirths(Task& maker, Moment moment) { TakeIn(maker, moment, false, false); }
+  void LookForCreations(Task& maker, Moment moment) { TakeIn(maker, moment, false, false); }
   // Of a thread that waits in the kernel, by vfork, for its child: the child is there. Before, the
   // thread waits for something else, as for the lock of a file that it maps.
   bool HasMadeChild(Task& maker, Moment moment);

@@ -52,7 +52,7 @@ void TrappedCalls::HandleUnmanaged(const TrappedCall& call, Moment moment) {
 // signals to handle.
 void TrappedCalls::Exit(Task& task, const TrappedCall& call) {
   task.trap_id = 0;
-  deaths_.EndAndWake(task, {task.reached});
+  thread_exit_.EndAndWake(task, {task.reached});
   ContinueTrapped(call.listener, call.id);
   // A thread that joins it looks at a word that the kernel clears. Were the kernel not through with
   // it, the coordinator would have to sleep for that, and threads would run whose turn it is not.

@@ -10,7 +10,7 @@
 #include "coordinator/calls/spawns.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/port/traps.h"
-#include "coordinator/processes/deaths.h"
+#include "coordinator/processes/thread_exit.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
 
@@ -19,14 +19,14 @@ namespace tcs {
 class TrappedCalls {
  public:
   TrappedCalls(RunState& run, Waker& waker, FutexCalls& futexes, RawCalls& raw,
-               const GuardedCalls& guard, Deaths& deaths, Executor& executor,
+               const GuardedCalls& guard, ThreadExit& thread_exit, Executor& executor,
                LocalSockets& local_sockets, Spawns& spawns)
       : run_(run),
         waker_(waker),
         futexes_(futexes),
         raw_(raw),
         guard_(guard),
-        deaths_(deaths),
+        thread_exit_(thread_exit),
         executor_(executor),
         local_sockets_(local_sockets),
         spawns_(spawns) {}
@@ -47,7 +47,7 @@ class TrappedCalls {
   FutexCalls& futexes_;
   RawCalls& raw_;
   const GuardedCalls& guard_;
-  Deaths& deaths_;
+  ThreadExit& thread_exit_;
   Executor& executor_;
   LocalSockets& local_sockets_;
   Spawns& spawns_;

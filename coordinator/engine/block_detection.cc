@@ -50,7 +50,7 @@ bool BlockDetection::LetsOthersRun() {
   if ((state == 'Z' || state == 'X') && run_.turn.held_looks > kExitTurns &&
       HeldThreads::HasExited(task)) {
     all_.settler.Settle(task);
-    all_.deaths.EndAndWake(task, {task.reached});
+    all_.thread_exit.EndAndWake(task, {task.reached});
     return true;
   }
   // This process may have waited in the kernel itself for what /proc says, and the thread gone on

@@ -26,8 +26,8 @@ namespace {
 // Enough for the kernel to carry out a call that does not wait.
 constexpr HostDuration kBrief = HostDuration::Microseconds(20);
 
-// What it computes after the birth of another thread is the host's, and the two share memory.
-constexpr HostDuration kBriefBirth = HostDuration::Microseconds(5);
+// What it computes after the creation of another thread is the host's, and the two share memory.
+constexpr HostDuration kBriefCreation = HostDuration::Microseconds(5);
 
 // Where the kernel does not tell whether a thread is still in its call.
 constexpr int kMostBriefTurns = 200;
@@ -37,9 +37,9 @@ constexpr HostDuration kLookTurn = HostDuration::Milliseconds(50);
 constexpr int kStartTurns = 600;
 
 bool MakesThread(const Task& task) {
-  return task.follow_up == FollowUp::kBirths &&
-         std::all_of(task.births.begin(), task.births.end(),
-                     [](const Birth& birth) { return birth.call.MakesThread(); });
+  return task.follow_up == FollowUp::kCreations &&
+         std::all_of(task.creations.begin(), task.creations.end(),
+                     [](const Creation& creation) { return creation.call.MakesThread(); });
 }
 
 // For how long the coordinator sleeps before its next look at a thread that is to make one call. A
@@ -48,7 +48,7 @@ bool MakesThread(const Task& task) {
 HostDuration BriefSleep(const Task& task, int looks) {
   constexpr int kEager = 8, kMostDoublings = 7;
   const int doublings = std::clamp(looks - kEager, 0, kMostDoublings);
-  return (MakesThread(task) ? kBriefBirth : kBrief) * (std::int64_t{1} << doublings);
+  return (MakesThread(task) ? kBriefCreation : kBrief) * (std::int64_t{1} << doublings);
 }
 
 // What the thread may compute once it is back from the kernel.
@@ -138,7 +138,7 @@ bool Dispatcher::HasMadeCall(Task& task, int* turns) {
 bool Dispatcher::GivesUpStart(Task& task, int turns) {
   if (UnmanagedThreads::NeverRegisters(task)) {
     all_.unmanaged.Lower(task.tid);
-    all_.deaths.End(task, {task.reached});
+    all_.thread_exit.End(task, {task.reached});
     return true;
   }
   if (turns < kStartTurns) return false;
@@ -232,7 +232,7 @@ void Dispatcher::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_unt
   // How far it comes in so short a time is the host's: under set costs no further than the call.
   if (task.is_brief && run_.IsFixed()) horizon = task.cpu->progress;
   // Others may have something to do as soon as the kernel has carried its call out.
-  if (task.is_brief || !task.births.empty()) idle_until = {};
+  if (task.is_brief || !task.creations.empty()) idle_until = {};
   run_.turn.Begin(task, horizon);
   all_.gate_keeper.TurnBegins();
   if (task.state == TaskState::kHolding) all_.waker.SetState(task, TaskState::kReady);
@@ -328,7 +328,7 @@ void Dispatcher::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_unti
   EndTurn(task);
   TellOthersOf(task, call, looks_again);
   if (task.process->expelled) {
-    if (task.state != TaskState::kDead) all_.expulsion.AwaitDeath(task);
+    if (task.state != TaskState::kDead) all_.expulsion.AwaitExit(task);
     return;
   }
   if (task.spins) all_.spinners.StepAside(task);

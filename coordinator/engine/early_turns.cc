@@ -90,7 +90,7 @@ void EarlyTurns::Take(Task& task) {
                                   : CpuClockOf(task));
   }
   if (task.died_beside) {
-    all_.deaths.ProcessEnded(task.process->index, {task.reached});
+    all_.thread_exit.ProcessEnded(task.process->index, {task.reached});
     run_.turn.End();
     return;
   }
@@ -99,7 +99,7 @@ void EarlyTurns::Take(Task& task) {
   all_.host_cpu.Woke();
   all_.dispatcher.TellOthersOf(task, call, false);
   if (task.process->expelled) {
-    if (task.state != TaskState::kDead) all_.expulsion.AwaitDeath(task);
+    if (task.state != TaskState::kDead) all_.expulsion.AwaitExit(task);
     return;
   }
   if (const auto& trapped = run_.turn.trapped;

@@ -22,7 +22,7 @@ class IdleTime : public EnginePart {
   int Living() const;
   // All threads have said that they end; the kernel is about to end their processes. False once
   // that is over.
-  bool AwaitDeaths();
+  bool AwaitExits();
   // What was waited for before counts no more.
   void StartAnew() { idle_at_.reset(); }
 

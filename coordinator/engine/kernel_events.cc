@@ -52,14 +52,14 @@ Reactor::Found KernelEvents::OnConnection(Subject subject, std::uint32_t, Moment
 
 Reactor::Found KernelEvents::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
   Process& ended = run_.table.ProcessAt(process.index);
-  if (TurnsBeside::NoteDeathIn(ended)) {
+  if (TurnsBeside::NoteExitIn(ended)) {
     all_.reactor.Remove(ended.pidfd.get());
     return {};
   }
   const bool runs = run_.turn.IsIn(ended);
   moment.at = std::max(moment.at, all_.ahead.EndOfDebt(ended));
   const auto end = [this, process](Moment at) {
-    all_.deaths.ProcessEnded(process.index, at);
+    all_.thread_exit.ProcessEnded(process.index, at);
     return kConcernsAll;
   };
   if (!all_.gate_keeper.PutOff(runs ? run_.turn.task() : nullptr, end)) return end(moment);

@@ -124,9 +124,8 @@ void Loop::StepCpu(VirtualCpu& cpu) {
 }
 
 bool Loop::Step() {
-  all_.deaths.DropLinks();
-  if (all_.idle_time.Living() == 0 && !all_.launches.AreAhead())
-    return all_.idle_time.AwaitDeaths();
+  all_.thread_exit.DropLinks();
+  if (all_.idle_time.Living() == 0 && !all_.launches.AreAhead()) return all_.idle_time.AwaitExits();
   if (all_.debugger.Holds()) {
     all_.idle_time.WaitForDebugger();
     return true;

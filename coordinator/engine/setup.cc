@@ -293,7 +293,7 @@ void Setup::TellOfWaits() {
 }
 
 void Setup::TellOfEnds() {
-  all_.deaths.Tell({
+  all_.thread_exit.Tell({
       .settle = [this](Task& task) { all_.settler.Settle(task); },
       .thread_ends = [this](Task& task, Moment moment) { all_.shared_events.PassOn(task, moment); },
       .thread_has_ended =

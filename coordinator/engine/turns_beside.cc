@@ -120,7 +120,7 @@ void TurnsBeside::Take(Task& task) {
   parts_.records.EndsBeside(task);
 }
 
-bool TurnsBeside::NoteDeathIn(const Process& process) {
+bool TurnsBeside::NoteExitIn(const Process& process) {
   bool has_turn = false;
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || !task->turns_beside) continue;

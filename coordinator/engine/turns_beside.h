@@ -69,7 +69,7 @@ class TurnsBeside {
   // What it has said is taken, and the turn is over for this class.
   void Take(Task& task);
   // The process has ended. True if it did so in such a turn: it happens when that has its order.
-  static bool NoteDeathIn(const Process& process);
+  static bool NoteExitIn(const Process& process);
   // A thread that lives beside is to run here.
   void BringHome(Task& task);
   // It has ended.

@@ -77,8 +77,6 @@
 #include "coordinator/os/real_time_right.h"
 #include "coordinator/port/unique_fd.h"
 #include "coordinator/processes/bare_programs.h"
-#include "coordinator/processes/births.h"
-#include "coordinator/processes/deaths.h"
 #include "coordinator/processes/expulsion.h"
 #include "coordinator/processes/grace.h"
 #include "coordinator/processes/held_threads.h"
@@ -88,6 +86,8 @@
 #include "coordinator/processes/ros_daemon.h"
 #include "coordinator/processes/run_records.h"
 #include "coordinator/processes/slot_check.h"
+#include "coordinator/processes/thread_creation.h"
+#include "coordinator/processes/thread_exit.h"
 #include "coordinator/processes/trap_listeners.h"
 #include "coordinator/processes/undispatched_threads.h"
 #include "coordinator/processes/unknown_children.h"
@@ -174,26 +174,27 @@ struct Wiring {
   SlotCheck slot_check{run.IsFixed(), [this] { return clock.NsAt(host_cpu.stop_tsc()); }};
   UsageBook usage{run.table, slot_check};
   Expulsion expulsion{run, waker, host_cpu};
-  Births births{run, waker, reactor, records};
-  Deaths deaths{run, waker, reactor, host_cpu, usage};
+  ThreadCreation thread_creation{run, waker, reactor, records};
+  ThreadExit thread_exit{run, waker, reactor, host_cpu, usage};
   TrapListeners traps{reactor};
   RegistrationSockets sockets{reactor};
   SpinWaits spins{run};
   DateCalls dates{run, waker};
-  Registration registration{{run, waker, reactor, host_cpu, sockets, bare_programs, births, deaths},
-                            {[this](Process& process, Moment moment) {
-                               TimerCalls::DeletePosix(process);
-                               dds.Leave(process, moment);
-                             },
-                             [this](const Process& process) { return dds.AreaOf(process); }}};
-  Launches launches{run, waker, births, sockets, traps, world, network, guard.guarded()};
+  Registration registration{
+      {run, waker, reactor, host_cpu, sockets, bare_programs, thread_creation, thread_exit},
+      {[this](Process& process, Moment moment) {
+         TimerCalls::DeletePosix(process);
+         dds.Leave(process, moment);
+       },
+       [this](const Process& process) { return dds.AreaOf(process); }}};
+  Launches launches{run, waker, thread_creation, sockets, traps, world, network, guard.guarded()};
   UnmanagedThreads unmanaged{run};
   UnknownChildren unknown_children{run.table, reactor, unmanaged};
   Grace grace{run, reactor, unknown_children, [this](Moment moment) { signals.Sent({}, moment); }};
 
-  Spawns spawns{
-      run,
-      {*executor, births, registration, scheduling, bare_programs, unknown_children, unmanaged}};
+  Spawns spawns{run,
+                {*executor, thread_creation, registration, scheduling, bare_programs,
+                 unknown_children, unmanaged}};
 
   // Calls that are made raw.
   RawTimes raw_times{run, waker, dates};
@@ -213,8 +214,8 @@ struct Wiring {
                      [this](Task& task) { return notifications.Yield(task); },
                      [this](Task& task, const TrappedCall& call) { trapped.Exit(task, call); }};
   TrappedWaits trapped_waits{words, raw_child_waits, activations};
-  TrappedCalls trapped{run,    waker,     futexes,       raw_calls, guard,
-                       deaths, *executor, local_sockets, spawns};
+  TrappedCalls trapped{run,         waker,     futexes,       raw_calls, guard,
+                       thread_exit, *executor, local_sockets, spawns};
   KeptCalls kept_calls{waker, descriptors};
   FollowUps follow_ups{run, objects, shared_events, signals, signal_wakes, spawns};
 

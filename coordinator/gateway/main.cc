@@ -5,8 +5,8 @@
 //
 // USER_DATA is that of the endpoint that announces nodes; an END is of served_end.h. One process of
 // it meets the simulation in shared memory, as any DDS program of a run. Its child does so by
-// sockets: tcsim has children of the gateway use these (processes/births.cc). Between them is a
-// stream of samples. Both are killed at the run's end.
+// sockets: tcsim has children of the gateway use these (processes/thread_creation.cc). Between them
+// is a stream of samples. Both are killed at the run's end.
 #include <dds/ddsrt/log.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-// The birth of clients.
+// How clients are started.
 #pragma once
 
 #include <sys/types.h>

@@ -19,7 +19,7 @@ namespace tcs {
 namespace {
 
 // A process of its own and not a thread: a killed coordinator must not have to wait for somebody
-// who may never get the processor again before its death is known.
+// who may never get the processor again before its end is known.
 [[noreturn]] void Detect(int arm, int fired) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const bool only_when_idle = !SetLevel(0, Level::kDetector);

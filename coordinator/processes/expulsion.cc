@@ -12,7 +12,7 @@ namespace tcs {
 
 namespace {
 
-constexpr HostDuration kMostDeath = HostDuration::Seconds(1);
+constexpr HostDuration kMostExit = HostDuration::Seconds(1);
 
 }  // namespace
 
@@ -30,12 +30,12 @@ void Expulsion::Expel(Process& process, const char* what) {
   for (Task* task : threads) {
     if (task->process != &process) continue;
     cpu_.active().LetRun(*task);
-    if (!run_.turn.IsOf(*task)) AwaitDeath(*task);
+    if (!run_.turn.IsOf(*task)) AwaitExit(*task);
   }
-  AwaitReadable(process.pidfd.get(), kMostDeath);
+  AwaitReadable(process.pidfd.get(), kMostExit);
 }
 
-void Expulsion::AwaitDeath(Task& task) {
+void Expulsion::AwaitExit(Task& task) {
   waker_.Leave(task);
   waker_.Wait(task, {awaited::Nothing{}});
   waker_.Refresh(*task.process->robot);

@@ -19,7 +19,7 @@ class Expulsion {
   // for nothing any more but their end; the running one's turn ends as ever. Once is enough.
   void Expel(Process& process, const char* what);
   // The thread waits for nothing any more.
-  void AwaitDeath(Task& task);
+  void AwaitExit(Task& task);
 
  private:
   RunState& run_;

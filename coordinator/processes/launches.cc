@@ -129,7 +129,7 @@ std::string Launches::Start(Launch& launch, VirtualTime at) {
     run_.Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
               "): threads wait for each other in real time");
   }
-  launch.process = births_.AddClient(spawned.pid, *launch.robot, client, at).process;
+  launch.process = thread_creation_.AddClient(spawned.pid, *launch.robot, client, at).process;
   sockets_.AssignTo(*launch.process);
   return {};
 }

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "coordinator/network/robot_network.h"
-#include "coordinator/processes/births.h"
 #include "coordinator/processes/registration_sockets.h"
+#include "coordinator/processes/thread_creation.h"
 #include "coordinator/processes/trap_listeners.h"
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/tasks/run_state.h"
@@ -33,12 +33,12 @@ class Launches {
   };
 
   // The processes in `guarded` are tcsim's own. All of these outlive this.
-  Launches(RunState& run, Waker& waker, Births& births, RegistrationSockets& sockets,
-           TrapListeners& traps, const World& world, const RobotNetwork& network,
-           const std::vector<pid_t>& guarded)
+  Launches(RunState& run, Waker& waker, ThreadCreation& thread_creation,
+           RegistrationSockets& sockets, TrapListeners& traps, const World& world,
+           const RobotNetwork& network, const std::vector<pid_t>& guarded)
       : run_(run),
         waker_(waker),
-        births_(births),
+        thread_creation_(thread_creation),
         sockets_(sockets),
         traps_(traps),
         world_(world),
@@ -67,7 +67,7 @@ class Launches {
 
   RunState& run_;
   Waker& waker_;
-  Births& births_;
+  ThreadCreation& thread_creation_;
   RegistrationSockets& sockets_;
   TrapListeners& traps_;
   const World& world_;

@@ -94,7 +94,7 @@ const char* Registration::WhyNot(const shm::AttachHello& hello, Moment moment) {
   const bool is_anothers =
       known != nullptr && run_.turn.IsOf(*known) && known->process->pid != hello.pid;
   const bool is_first = hello.tid == hello.pid;
-  if (is_anothers || (is_first && !parts_.deaths.EndThreadsLostInExec(hello.pid, moment))) {
+  if (is_anothers || (is_first && !parts_.thread_exit.EndThreadsLostInExec(hello.pid, moment))) {
     return "it has a place there already";
   }
   return nullptr;
@@ -157,8 +157,9 @@ Task* Registration::Adopt(pid_t tid, Moment moment) {
     return nullptr;
   }
   Task* task = run_.table.Living(tid);
-  if (task == nullptr && known != nullptr) task = &parts_.births.AddThread(*known, tid, moment.at);
-  if (task == nullptr) task = &parts_.births.AddChild(pid, maker->pid, *maker, moment.at);
+  if (task == nullptr && known != nullptr)
+    task = &parts_.thread_creation.AddThread(*known, tid, moment.at);
+  if (task == nullptr) task = &parts_.thread_creation.AddChild(pid, maker->pid, *maker, moment.at);
   task->process->is_bare = true;
   GivePlace(*task, moment, 0, false);
   if (task->slot < 0) return task;
@@ -191,14 +192,15 @@ void Registration::GivePlace(Task& task, Moment moment, std::uint64_t end_word, 
 Task& Registration::TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment) {
   if (Task* known = run_.table.Living(tid); known != nullptr) {
     if (known->process->pid == pid) return *known;
-    parts_.deaths.End(*known, moment);  // its number is another's now
+    parts_.thread_exit.End(*known, moment);  // its number is another's now
   }
   if (Process* known = run_.table.LivingProcess(pid); known != nullptr) {
-    return parts_.births.AddThread(*known, tid, moment.at);
+    return parts_.thread_creation.AddThread(*known, tid, moment.at);
   }
   const pid_t parent_pid = ParentOf(pid);
   const Process* parent = run_.table.LivingProcess(parent_pid);
-  return parts_.births.AddChild(pid, parent_pid, parent != nullptr ? *parent : client, moment.at);
+  return parts_.thread_creation.AddChild(pid, parent_pid, parent != nullptr ? *parent : client,
+                                         moment.at);
 }
 
 // The C library has taken back what an ended thread had there. Who waits there already, joins.

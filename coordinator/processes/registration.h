@@ -20,9 +20,9 @@
 
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/processes/bare_programs.h"
-#include "coordinator/processes/births.h"
-#include "coordinator/processes/deaths.h"
 #include "coordinator/processes/registration_sockets.h"
+#include "coordinator/processes/thread_creation.h"
+#include "coordinator/processes/thread_exit.h"
 #include "coordinator/tasks/moment.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/run_state.h"
@@ -41,8 +41,8 @@ class Registration {
     HostCpu& cpu;
     RegistrationSockets& sockets;
     BarePrograms& bare_programs;
-    Births& births;
-    Deaths& deaths;
+    ThreadCreation& thread_creation;
+    ThreadExit& thread_exit;
   };
 
   struct Callbacks {

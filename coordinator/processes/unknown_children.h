@@ -1,5 +1,5 @@
 // Children that share their parents' memory without being threads, as a leak checker's that stops
-// its parent; and those whose births were missed. They do not register. Their parent learns of
+// its parent; and those whose creation was missed. They do not register. Their parent learns of
 // their end, and virtual time waits while they run.
 //
 // For the coordinator's thread only. Reads /proc, and has the reactor watch for their ends

@@ -47,12 +47,12 @@ enum class FollowUp {
   kObjects,
   kContinued,
   kTerminals,
-  kBirths
+  kCreations
 };
 
 // A thread or a process that a thread is making, or has made: it is looked for until it is known
 // (calls/spawns.h).
-struct Birth {
+struct Creation {
   CloneCall call;
   bool is_announced = false;  // the shim has made it, and tells of it next
 };
@@ -140,11 +140,11 @@ struct Task : HostThread {
   std::optional<SpinWait> spin;
   VirtualTime asked_at;
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
-  std::vector<Birth> births;    // that it has begun, the earliest first
-  bool in_vfork = false;        // it stands in the kernel until its child executes or ends
+  std::vector<Creation> creations;  // that it has begun, the earliest first
+  bool in_vfork = false;            // it stands in the kernel until its child executes or ends
   // It has its place, but does not know of it: it has made no call yet that the shim sees.
   bool is_adopted = false;
-  std::uint64_t tls = 0;       // of one that was that at its birth; 0: unknown
+  std::uint64_t tls = 0;       // of one that was that at its creation; 0: unknown
   bool can_be_stopped = true;  // it has the handler that brings a thread to its gate
   bool executes = false;       // another program, perhaps: it has no handlers there
   // Its gate has been opened, and nothing that it has said since has been heard.

@@ -43,7 +43,7 @@ SimulatedRun::SimulatedRun(Scenario scenario, std::uint64_t host, bool has_level
 }
 
 Process& SimulatedRun::AddClient(Robot& robot, const ClientSpec& client) {
-  client_ = all_.births.AddClient(next_pid_, robot, client, {}).process;
+  client_ = all_.thread_creation.AddClient(next_pid_, robot, client, {}).process;
   next_pid_ += 1'000;
   threads_ = 0;
   client_->link = ProcessLink::Make();
@@ -59,8 +59,8 @@ Process& SimulatedRun::AddClient(Robot& robot, const ClientSpec& client) {
 
 Task& SimulatedRun::AddThread(std::function<void(const preload::GuestThread&)> body) {
   const pid_t tid = client_->pid + threads_;
-  Task& task =
-      threads_ == 0 ? *all_.run.table.Living(tid) : all_.births.AddThread(*client_, tid, {});
+  Task& task = threads_ == 0 ? *all_.run.table.Living(tid)
+                             : all_.thread_creation.AddThread(*client_, tid, {});
   ++threads_;
   all_.registration.GivePlace(task, {}, 0, true);
   task.is_adopted = false;

@@ -40,12 +40,12 @@ class LaunchesTest : public testing::Test {
   Reactor reactor_;
   World world_{[](const std::string&) {}};
   RunRecords records_{run_, world_, activations_};
-  Births births_{run_, waker_, reactor_, records_};
+  ThreadCreation thread_creation_{run_, waker_, reactor_, records_};
   RegistrationSockets sockets_{reactor_};
   TrapListeners traps_{reactor_};
   const std::vector<pid_t> guarded_;
   RobotNetwork network_;
-  Launches launches_{run_, waker_, births_, sockets_, traps_, world_, network_, guarded_};
+  Launches launches_{run_, waker_, thread_creation_, sockets_, traps_, world_, network_, guarded_};
   Process ended_;
 };
 

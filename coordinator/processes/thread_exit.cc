@@ -1,4 +1,4 @@
-#include "coordinator/processes/deaths.h"
+#include "coordinator/processes/thread_exit.h"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -13,11 +13,11 @@
 
 namespace tcs {
 
-void Deaths::End(Task& task, Moment moment) {
+void ThreadExit::End(Task& task, Moment moment) {
   Process& process = *task.process;
   usage_.Keep(task);
   task.cpu_clock_fd.Reset();
-  task.births.clear();
+  task.creations.clear();
   if (task.slot >= 0) {
     std::int64_t& stalest_ns = run_.report.staleness_ns;
     stalest_ns = std::max(stalest_ns, SlotCheck::StalenessOf(task));
@@ -36,19 +36,19 @@ void Deaths::End(Task& task, Moment moment) {
   waker_.Refresh(*process.robot);
 }
 
-void Deaths::EndAndWake(Task& task, Moment moment) {
+void ThreadExit::EndAndWake(Task& task, Moment moment) {
   End(task, moment);
   listeners_.wake_those_waiting_for(task, moment);
 }
 
-void Deaths::EndThreadsOf(const Process& process, const Task* except, Moment moment) {
+void ThreadExit::EndThreadsOf(const Process& process, const Task* except, Moment moment) {
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
     if (task->process == &process && task != except) EndAndWake(*task, moment);
   }
 }
 
-bool Deaths::EndThreadsLostInExec(pid_t pid, Moment moment) {
+bool ThreadExit::EndThreadsLostInExec(pid_t pid, Moment moment) {
   Task* first = run_.table.Living(pid);
   Process* of = run_.table.LivingProcess(pid);
   if (of == nullptr || of->threads == 1) return true;
@@ -73,7 +73,7 @@ bool Deaths::EndThreadsLostInExec(pid_t pid, Moment moment) {
   return true;
 }
 
-void Deaths::ProcessEnded(std::uint32_t index, Moment moment) {
+void ThreadExit::ProcessEnded(std::uint32_t index, Moment moment) {
   Process& process = run_.table.ProcessAt(index);
   if (process.dead) return;
   if (run_.turn.IsIn(process)) {
@@ -104,7 +104,7 @@ void Deaths::ProcessEnded(std::uint32_t index, Moment moment) {
 }
 
 // Most programs that are refused io_uring do without. One that fails then may have failed for that.
-void Deaths::TellOfRefusal(const Process& process) const {
+void ThreadExit::TellOfRefusal(const Process& process) const {
   const int status = EndOf(process.pid).value_or(0);
   const bool gave_up = WIFEXITED(status) ? WEXITSTATUS(status) != 0 : WTERMSIG(status) == SIGABRT;
   if (!gave_up) return;
@@ -115,7 +115,7 @@ void Deaths::TellOfRefusal(const Process& process) const {
 }
 
 // If it is the coordinator's own child.
-void Deaths::Reap(Process& process) {
+void ThreadExit::Reap(Process& process) {
   const std::optional<int> status = WaitStatusOf(process.pid);
   if (!status.has_value()) return;  // its parent's to reap
   process.wait_status = *status;

@@ -1,4 +1,4 @@
-#include "coordinator/processes/births.h"
+#include "coordinator/processes/thread_creation.h"
 
 #include <fmt/format.h>
 #include <sys/epoll.h>
@@ -27,7 +27,7 @@ bool IsByDeadline(const Scenario& scenario, const Robot& robot) {
 
 }  // namespace
 
-Task& Births::AddTask(Process& process, pid_t tid, VirtualTime at) {
+Task& ThreadCreation::AddTask(Process& process, pid_t tid, VirtualTime at) {
   Task& task = run_.table.AddTask(tid);
   task.process = &process;
   task.own_tid = process.pid_namespace == 0 ? tid : OwnNumberOf(tid).number;
@@ -48,7 +48,7 @@ Task& Births::AddTask(Process& process, pid_t tid, VirtualTime at) {
   return task;
 }
 
-Process& Births::AddProcess(pid_t pid, pid_t parent, Robot& robot) {
+Process& ThreadCreation::AddProcess(pid_t pid, pid_t parent, Robot& robot) {
   Process& process = run_.table.AddProcess(pid);
   process.parent = parent;
   const OwnNumber own = OwnNumberOf(pid);
@@ -64,7 +64,7 @@ Process& Births::AddProcess(pid_t pid, pid_t parent, Robot& robot) {
   return process;
 }
 
-Task& Births::AddClient(pid_t pid, Robot& robot, const ClientSpec& client, VirtualTime at) {
+Task& ThreadCreation::AddClient(pid_t pid, Robot& robot, const ClientSpec& client, VirtualTime at) {
   Process& process = AddProcess(pid, getpid(), robot);
   process.is_client = true;
   process.client = &process;
@@ -82,7 +82,7 @@ Task& Births::AddClient(pid_t pid, Robot& robot, const ClientSpec& client, Virtu
   return task;
 }
 
-Task& Births::AddChild(pid_t pid, pid_t parent, const Process& maker, VirtualTime at) {
+Task& ThreadCreation::AddChild(pid_t pid, pid_t parent, const Process& maker, VirtualTime at) {
   Process& process = AddProcess(pid, parent, *maker.robot);
   process.client = maker.client;
   process.name = maker.name;
@@ -102,7 +102,7 @@ Task& Births::AddChild(pid_t pid, pid_t parent, const Process& maker, VirtualTim
   return task;
 }
 
-Task& Births::AddThread(Process& process, pid_t tid, VirtualTime at) {
+Task& ThreadCreation::AddThread(Process& process, pid_t tid, VirtualTime at) {
   ++process.threads;
   Task& task = AddTask(process, tid, at);
   task.is_further = true;

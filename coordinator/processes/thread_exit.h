@@ -22,7 +22,7 @@
 
 namespace tcs {
 
-class Deaths {
+class ThreadExit {
  public:
   // Other parts that keep something for threads and processes. All must be set.
   struct Listeners {
@@ -39,7 +39,7 @@ class Deaths {
     std::function<void(Process&, Moment)> process_has_ended;
   };
 
-  Deaths(RunState& run, Waker& waker, Reactor& reactor, HostCpu& cpu, const UsageBook& usage)
+  ThreadExit(RunState& run, Waker& waker, Reactor& reactor, HostCpu& cpu, const UsageBook& usage)
       : run_(run), waker_(waker), reactor_(reactor), cpu_(cpu), usage_(usage) {}
   void Tell(Listeners listeners) { listeners_ = std::move(listeners); }
 

@@ -1,4 +1,4 @@
-#include "coordinator/processes/deaths.h"
+#include "coordinator/processes/thread_exit.h"
 
 #include <gtest/gtest.h>
 
@@ -19,13 +19,13 @@ class NoExecutor : public Executor {
 
 // A client with two threads that wait, and a child of it with one. None of them has registered, and
 // their numbers are nobody's.
-class DeathsTest : public testing::Test {
+class ThreadExitTest : public testing::Test {
  protected:
-  DeathsTest() {
+  ThreadExitTest() {
     const auto note = [this](std::string what, const Task& task) {
       happened_.push_back(what + " " + std::to_string(task.tid - kFirst));
     };
-    deaths_.Tell({
+    thread_exit_.Tell({
         .settle = [note](Task& task) { note("settle", task); },
         .thread_ends = [note](Task& task, Moment) { note("ends", task); },
         .thread_has_ended = [note](Task& task) { note("has ended", task); },
@@ -78,29 +78,29 @@ class DeathsTest : public testing::Test {
   HostCpu cpu_{executor_, HostDuration::Seconds(10)};
   SlotCheck check_{true, [] { return std::int64_t{0}; }};
   UsageBook usage_{run_.table, check_};
-  Deaths deaths_{run_, waker_, reactor_, cpu_, usage_};
+  ThreadExit thread_exit_{run_, waker_, reactor_, cpu_, usage_};
   Process* client_ = nullptr;
   Process* child_ = nullptr;
 };
 
-TEST_F(DeathsTest, AThreadThatHasEndedIsNobodyAnyMore) {
+TEST_F(ThreadExitTest, AThreadThatHasEndedIsNobodyAnyMore) {
   Task& task = *run_.table.Living(kFirst + 1);
-  deaths_.End(task, {});
+  thread_exit_.End(task, {});
   EXPECT_EQ(happened_, (std::vector<std::string>{"ends 1", "has ended 1"}));
   EXPECT_EQ(task.state, TaskState::kDead);
   EXPECT_EQ(run_.table.Living(kFirst + 1), nullptr);
   EXPECT_EQ(robot_.tasks.size(), 2u);
 }
 
-TEST_F(DeathsTest, WhatAThreadWasChargedStaysItsProcesses) {
-  deaths_.EndAndWake(*run_.table.Living(kFirst + 1), {});
+TEST_F(ThreadExitTest, WhatAThreadWasChargedStaysItsProcesses) {
+  thread_exit_.EndAndWake(*run_.table.Living(kFirst + 1), {});
   EXPECT_EQ(happened_.back(), "wake for 1");
   EXPECT_EQ(UsageBook::ChargedTo(*client_), 10 * kMs);
   EXPECT_EQ(usage_.ChargedToAllOf(*client_), 15 * kMs);
 }
 
-TEST_F(DeathsTest, AProcessEndsWithAllItsThreadsAndThenItsParentIsTold) {
-  deaths_.ProcessEnded(child_->index, {At(7 * kMs)});
+TEST_F(ThreadExitTest, AProcessEndsWithAllItsThreadsAndThenItsParentIsTold) {
+  thread_exit_.ProcessEnded(child_->index, {At(7 * kMs)});
   EXPECT_EQ(happened_, (std::vector<std::string>{"ends 2", "has ended 2", "wake for 2", "child 2",
                                                  "process 2"}));
   EXPECT_TRUE(child_->dead);
@@ -111,10 +111,10 @@ TEST_F(DeathsTest, AProcessEndsWithAllItsThreadsAndThenItsParentIsTold) {
   EXPECT_EQ(usage_.ChargedToAllOf(*client_), 15 * kMs);
 }
 
-TEST_F(DeathsTest, AProcessEndsOnce) {
-  deaths_.ProcessEnded(child_->index, {At(7 * kMs)});
+TEST_F(ThreadExitTest, AProcessEndsOnce) {
+  thread_exit_.ProcessEnded(child_->index, {At(7 * kMs)});
   happened_.clear();
-  deaths_.ProcessEnded(child_->index, {At(9 * kMs)});
+  thread_exit_.ProcessEnded(child_->index, {At(9 * kMs)});
   EXPECT_TRUE(happened_.empty());
   EXPECT_EQ(child_->ended_at, At(7 * kMs));
 }

@@ -17,9 +17,9 @@
 
 namespace tcs {
 
-class Births {
+class ThreadCreation {
  public:
-  Births(RunState& run, Waker& waker, Reactor& reactor, RunRecords& records)
+  ThreadCreation(RunState& run, Waker& waker, Reactor& reactor, RunRecords& records)
       : run_(run), waker_(waker), reactor_(reactor), records_(records) {}
 
   // Each returns the thread that is new, of a process the first one. The reactor watches for the
