@@ -68,12 +68,12 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
   Robot& robot = *task.process->robot;
   const Moment moment{task.reached};
   bool looks_again = false;
-  if (task.process->expelled) {
-    parts_.expulsion.AwaitExit(task);
+  if (task.process->violates_protocol) {
+    parts_.violations.AwaitExit(task);
     return false;
   }
   if (const char* what = SlotCheck::WhatIsImpossible(note); what != nullptr) {
-    parts_.expulsion.Expel(*task.process, what);
+    parts_.violations.EndProcess(*task.process, what);
     return false;
   }
   const bool announces = note.kind == Kind::kSpawned || note.kind == Kind::kMadeThread;

@@ -15,7 +15,7 @@
 #include "coordinator/calls/signal_calls.h"
 #include "coordinator/calls/spawns.h"
 #include "coordinator/calls/timer_calls.h"
-#include "coordinator/processes/expulsion.h"
+#include "coordinator/processes/protocol_violations.h"
 #include "coordinator/processes/slot_check.h"
 #include "coordinator/processes/unknown_children.h"
 #include "coordinator/tasks/run_state.h"
@@ -28,7 +28,7 @@ namespace tcs {
 class Notifications {
  public:
   struct Parts {
-    Expulsion& expulsion;
+    ProtocolViolations& violations;
     DescriptorWaits& descriptors;
     UnknownChildren& unknown_children;
     TimerCalls& timers;

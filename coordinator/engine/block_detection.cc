@@ -59,7 +59,7 @@ bool BlockDetection::LetsOthersRun() {
   // It has executed another program, has registered meanwhile and sleeps at its first gate, to
   // which it comes without a notification.
   if (state == 'S' && task.parked) return true;
-  if (state == 'S' && CutsOff(task)) return task.process->expelled;
+  if (state == 'S' && CutsOff(task)) return task.process->violates_protocol;
   if (state == 't' && all_.debugger.IsOf(*task.process)) return false;  // and everybody with it
   const auto in_call = state == 'S' || state == 'D'
                            ? all_.outside.LookIntoCall(task, HostNs(HostClockOf(task)))
@@ -108,7 +108,7 @@ bool BlockDetection::CutsOff(Task& task) {
   pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
   if (poll(&incoming, 1, 0) != 0) return false;
   if (std::exchange(task.is_cut_off, true)) {
-    all_.expulsion.Expel(*task.process, "a notification that was never sent");
+    all_.violations.EndProcess(*task.process, "a notification that was never sent");
     return true;
   }
   shm::ThreadSlot& slot = SlotOf(task);

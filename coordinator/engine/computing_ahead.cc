@@ -49,8 +49,8 @@ bool ComputingAhead::MaySend(const Task& task) const {
                            !process.timers.HasCpuTimers();
   const bool is_busy_otherwise =
       task.is_brief || task.executes || task.is_adopted || task.spins || task.is_deliverer ||
-      task.notified_early || task.early_trap.has_value() || process.expelled || process.stopped ||
-      process.stays_home || stays_home_ || parts_.run.IsInGrace();
+      task.notified_early || task.early_trap.has_value() || process.violates_protocol ||
+      process.stopped || process.stays_home || stays_home_ || parts_.run.IsInGrace();
   // Stopped in the midst of a call, it would do what it is about to do to others in no turn.
   const bool is_in_call = SlotOf(task).open_calls.load() != 0;
   return is_ordinary && !is_busy_otherwise && !is_in_call;

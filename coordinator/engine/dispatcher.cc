@@ -327,8 +327,8 @@ void Dispatcher::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_unti
   all_.gate_keeper.BringToGate(task);
   EndTurn(task);
   TellOthersOf(task, call, looks_again);
-  if (task.process->expelled) {
-    if (task.state != TaskState::kDead) all_.expulsion.AwaitExit(task);
+  if (task.process->violates_protocol) {
+    if (task.state != TaskState::kDead) all_.violations.AwaitExit(task);
     return;
   }
   if (task.spins) all_.spinners.StepAside(task);

@@ -98,8 +98,8 @@ void EarlyTurns::Take(Task& task) {
   run_.report.ahead_ns += task.ran.ns();
   all_.host_cpu.Woke();
   all_.dispatcher.TellOthersOf(task, call, false);
-  if (task.process->expelled) {
-    if (task.state != TaskState::kDead) all_.expulsion.AwaitExit(task);
+  if (task.process->violates_protocol) {
+    if (task.state != TaskState::kDead) all_.violations.AwaitExit(task);
     return;
   }
   if (const auto& trapped = run_.turn.trapped;

@@ -47,7 +47,7 @@ bool MayCompute(const Task& task) {
   const bool has_stopped = task.parked || task.trap_id != 0 || task.early_trap.has_value() ||
                            task.notified_early || task.is_put_off || task.is_call_put_off;
   return task.state != TaskState::kDead && task.slot >= 0 && task.can_be_stopped && !has_stopped &&
-         !task.executes && !task.process->expelled;
+         !task.executes && !task.process->violates_protocol;
 }
 
 // It waits, as it has said, and is awake: it is on its way to sleep at its gate, or a handler that
@@ -55,7 +55,8 @@ bool MayCompute(const Task& task) {
 // nobody has answered that: for a signal, whose handler it runs. Later kernels do so only for
 // signals that end the process (kHoldsSignals in os/trap.cc).
 bool IsAwakeInWait(const Task& task) {
-  if (task.state != TaskState::kWaiting || task.slot < 0 || task.process->expelled) return false;
+  if (task.state != TaskState::kWaiting || task.slot < 0 || task.process->violates_protocol)
+    return false;
   const bool may_be =
       task.trap_id == 0 ? task.parked : !HasAnswerToTake(task.trap_listener, task.trap_id);
   return may_be && ThreadState(task.tid) == 'R';
@@ -128,7 +129,7 @@ void GateKeeper::BringToGate(Task& task) {
       run_.Preempts() || (run_.gates_only && task.metered.pays_for_silence && run_.turn.timed_out);
   const bool computes = is_charged && task.slot >= 0 && Waker::IsRunnable(task) && !task.parked &&
                         !run_.turn.HasSpoken() && !task.is_brief && task.can_be_stopped &&
-                        !task.executes && !task.process->expelled;
+                        !task.executes && !task.process->violates_protocol;
   if (!computes || !task.HasOwnClock() || ThreadState(task.tid) != 'R') return;
   const HostDuration sent = HostNs(HostClockOf(task));
   run_.turn.is_sent_to_gate = task.has_signal = true;

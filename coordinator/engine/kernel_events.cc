@@ -107,7 +107,7 @@ Reactor::Found KernelEvents::OnCommand(Subject channel, std::uint32_t, Moment mo
     Task& task = *run_.turn.task();
     // What it has posted it has sent before.
     if (const char* what = all_.posted.Take(task); what != nullptr) {
-      all_.expulsion.Expel(*task.process, what);
+      all_.violations.EndProcess(*task.process, what);
       return {.stops_running = true};
     }
     from = {static_cast<std::uint64_t>(task.tid),

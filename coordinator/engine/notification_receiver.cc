@@ -59,7 +59,7 @@ bool NotificationReceiver::Handle(Task& task) {
     return all_.notifications.Handle(task, said);
   const shm::Notification interrupted = slot.interrupted;
   const bool finds_more = all_.notifications.Handle(task, interrupted);
-  if (!task.process->expelled) HandlerCame(task, {task.reached});
+  if (!task.process->violates_protocol) HandlerCame(task, {task.reached});
   return finds_more;
 }
 

@@ -24,7 +24,7 @@ void Settler::TakeOutUntold(Task& task, const shm::ClockReading& before, HostDur
 bool Settler::TakeNotesOf(Task& task) {
   const char* what = TakeIpcNotes(task, *all_.memory, run_.first_realtime_offset_ns.has_value());
   if (what == nullptr) what = all_.datagrams.TakeNotes(task, task.cpu->progress);
-  if (what != nullptr) all_.expulsion.Expel(*task.process, what);
+  if (what != nullptr) all_.violations.EndProcess(*task.process, what);
   return what == nullptr;
 }
 
@@ -45,7 +45,7 @@ void Settler::Settle(Task& task) {
   if (what == nullptr) what = all_.posted.Take(task);
   if (what != nullptr) {
     task.ComeTo(task.cpu->progress);
-    all_.expulsion.Expel(*task.process, what);
+    all_.violations.EndProcess(*task.process, what);
     return;
   }
   MeteredThread& metered = task.metered;

@@ -35,7 +35,7 @@ bool IsUndisturbed(const Task& task) {
 
 bool IsUndisturbed(const Process& process) {
   return process.dds_number == 0 && !process.has_unmanaged_threads && !process.stopped &&
-         !process.expelled && !process.killed && process.timers.NextExpiry().IsNever() &&
+         !process.violates_protocol && !process.killed && process.timers.NextExpiry().IsNever() &&
          !process.timers.HasCpuTimers();
 }
 

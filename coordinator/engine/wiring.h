@@ -77,10 +77,10 @@
 #include "coordinator/os/real_time_right.h"
 #include "coordinator/port/unique_fd.h"
 #include "coordinator/processes/bare_programs.h"
-#include "coordinator/processes/expulsion.h"
 #include "coordinator/processes/grace.h"
 #include "coordinator/processes/held_threads.h"
 #include "coordinator/processes/launches.h"
+#include "coordinator/processes/protocol_violations.h"
 #include "coordinator/processes/registration.h"
 #include "coordinator/processes/registration_sockets.h"
 #include "coordinator/processes/ros_daemon.h"
@@ -173,7 +173,7 @@ struct Wiring {
   // Who takes part: how threads and processes come, and how they go.
   SlotCheck slot_check{run.IsFixed(), [this] { return clock.NsAt(host_cpu.stop_tsc()); }};
   UsageBook usage{run.table, slot_check};
-  Expulsion expulsion{run, waker, host_cpu};
+  ProtocolViolations violations{run, waker, host_cpu};
   ThreadCreation thread_creation{run, waker, reactor, records};
   ThreadExit thread_exit{run, waker, reactor, host_cpu, usage};
   TrapListeners traps{reactor};
@@ -220,10 +220,11 @@ struct Wiring {
   FollowUps follow_ups{run, objects, shared_events, signals, signal_wakes, spawns};
 
   // What they notify.
-  Notifications notifications{run,
-                              waker,
-                              {expulsion, descriptors, unknown_children, timers, spawns, scheduling,
-                               signals, objects, dds, local_sockets, outside, spins, dates}};
+  Notifications notifications{
+      run,
+      waker,
+      {violations, descriptors, unknown_children, timers, spawns, scheduling, signals, objects, dds,
+       local_sockets, outside, spins, dates}};
 
   // What users are told.
   DebuggerHold debugger{run};

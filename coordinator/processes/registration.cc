@@ -106,7 +106,7 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   Task& task = TaskFor(hello.pid, hello.tid, client, moment);
   Process& process = *task.process;
   const bool wants_all = hello.wants == shm::AttachWants::kAll;
-  if (process.expelled) return false;
+  if (process.violates_protocol) return false;
   if (process.link == nullptr && wants_all) Connect(process);
   UniqueFd porters_end;
   if (wants_all && run_.has_porters && !(porters_end = GivePorter(process))) {

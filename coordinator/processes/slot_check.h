@@ -1,6 +1,6 @@
 // Impossible values in the memory that a process shares with the coordinator: a stray pointer wrote
-// there, or the program means harm (expulsion.h). The coordinator uses nothing that it reads there
-// before this class has checked it.
+// there, or the program means harm (protocol_violations.h). The coordinator uses nothing that it
+// reads there before this class has checked it.
 //
 // Reads the slots of threads that have registered and are stopped; writes nothing, makes no system
 // call. The sentences stand in the brackets of "has written an impossible value … (". Times are

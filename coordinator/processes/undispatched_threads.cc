@@ -23,8 +23,8 @@ bool UndispatchedThreads::MayBeTold(const Task& task) const {
   if (run_.gates_only || !run_.IsFixed()) return false;
   const Process& process = *task.process;
   const bool may_run = task.slot >= 0 && task.can_be_stopped && !task.is_ahead &&
-                       !task.turns_beside && Waker::IsRunnable(task) && !process.expelled &&
-                       !process.dead;
+                       !task.turns_beside && Waker::IsRunnable(task) &&
+                       !process.violates_protocol && !process.dead;
   return may_run && std::none_of(process.robot->tasks.begin(), process.robot->tasks.end(),
                                  [&process](const Task* other) {
                                    return other->process == &process && other->executes;

@@ -231,11 +231,11 @@ struct Process {
   bool stays_home = false;        // its threads do not compute ahead (computing_ahead.h)
   bool counter_warned = false;    // a client: of what it, or a descendant, reads by rdtsc
   bool dds_warned = false;        // a client: of what it, or a descendant, sends
-  bool has_erred = false;         // a client: it, or a descendant, was expelled
+  bool has_erred = false;         // a client: it, or a descendant, has violated the protocol
   Task* deliverer = nullptr;      // its thread that takes what is for it
   bool dead = false;
   bool killed = false;                      // at the end of its grace
-  bool expelled = false;                    // killed, for what it has written into shared memory
+  bool violates_protocol = false;           // killed, for what it has written into shared memory
   int threads = 1;                          // that ever attached
   DescriptorChanges changes;                // of its descriptors
   bool has_unmanaged_threads = false;       // threads that never will

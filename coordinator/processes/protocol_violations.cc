@@ -1,4 +1,4 @@
-#include "coordinator/processes/expulsion.h"
+#include "coordinator/processes/protocol_violations.h"
 
 #include <fmt/format.h>
 
@@ -17,8 +17,8 @@ constexpr HostDuration kMostExit = HostDuration::Seconds(1);
 }  // namespace
 
 // Its threads get to the end at once, and nobody runs meanwhile: it takes the kernel some steps.
-void Expulsion::Expel(Process& process, const char* what) {
-  if (std::exchange(process.expelled, true)) return;
+void ProtocolViolations::EndProcess(Process& process, const char* what) {
+  if (std::exchange(process.violates_protocol, true)) return;
   if (!std::exchange(process.client->has_erred, true))
     run_.Warn(
         fmt::format("{} (pid {}) has written an impossible value into the memory that it shares "
@@ -35,7 +35,7 @@ void Expulsion::Expel(Process& process, const char* what) {
   AwaitReadable(process.pidfd.get(), kMostExit);
 }
 
-void Expulsion::AwaitExit(Task& task) {
+void ProtocolViolations::AwaitExit(Task& task) {
   waker_.Leave(task);
   waker_.Wait(task, {awaited::Nothing{}});
   waker_.Refresh(*task.process->robot);
