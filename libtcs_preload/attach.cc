@@ -10,9 +10,9 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include "libtcs_preload/descriptor_broker.h"
 #include "libtcs_preload/environment.h"
 #include "libtcs_preload/exchange.h"
-#include "libtcs_preload/porter.h"
 #include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/attach_protocol.h"
@@ -194,7 +194,7 @@ void Attach(GuestThread& thread, unsigned long blocked) {
     if (g_header == nullptr) MapRun(received.fds[0]);
     MapSlots(received.fds[1]);
     Keep(received.fds[2], g_notify_fd, more);
-    if (received.fds[3] >= 0) Keep(received.fds[3], g_porter_fd, more);
+    if (received.fds[3] >= 0) Keep(received.fds[3], g_broker_fd, more);
     RawSyscall(SYS_close, received.fds[0]);
     RawSyscall(SYS_close, received.fds[1]);
   }
@@ -206,7 +206,7 @@ void Attach(GuestThread& thread, unsigned long blocked) {
   thread.slot->blocked_signals = blocked;
   AllowPreemption();
   thread.slot->spin.can_be_asked = OwnSignals() != 0 ? 1 : 0;
-  if (is_first && g_header->has_porters != 0) MakePorter();
+  if (is_first && g_header->has_brokers != 0) MakeBroker();
   AwaitFirstDispatch(thread);
 }
 

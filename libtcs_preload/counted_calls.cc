@@ -1,9 +1,9 @@
 // What a call costs where calls have a set cost, and where it has to wait for its thread's turn.
 #include <utility>
 
+#include "libtcs_preload/descriptor_broker.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
-#include "libtcs_preload/porter.h"
 #include "libtcs_preload/virtual_clock.h"
 #include "shm/clock_page.h"
 
@@ -30,7 +30,7 @@ bool BeganInUnseenCall(GuestThread& thread) {
 
 void CountCall(GuestThread& thread, Concern concern) {
   if (g_header->gates_only != 0) {
-    KeepPorter();
+    KeepBroker();
     const bool is_fixed = g_header->accounting == shm::Accounting::kFixed;
     const bool has_to_wait = is_fixed && (concern == Concern::kOthers || !IsDispatched(thread));
     if (has_to_wait || thread.in_call || IsAtGate(thread) || BeganInUnseenCall(thread)) {

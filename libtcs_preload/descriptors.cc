@@ -70,8 +70,8 @@ long CloseRange(unsigned first, unsigned last, unsigned flags) {
     for (unsigned fd = first; fd <= last && fd < 1024; ++fd) ForgetTimer(static_cast<int>(fd));
   }
   // Around the shim's own.
-  const bool in_order = g_notify_fd < g_porter_fd;
-  const long own[] = {in_order ? g_notify_fd : g_porter_fd, in_order ? g_porter_fd : g_notify_fd};
+  const bool in_order = g_notify_fd < g_broker_fd;
+  const long own[] = {in_order ? g_notify_fd : g_broker_fd, in_order ? g_broker_fd : g_notify_fd};
   long from = first, result = 0;
   bool skips = false;
   for (const long fd : own) {

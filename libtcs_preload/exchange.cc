@@ -380,7 +380,7 @@ bool IsAtGate(const GuestThread& thread) {
 
 void AwaitFirstDispatch(GuestThread& thread) {
   WaitAtGate(*thread.slot, nullptr, {},
-             g_header->has_porters != 0 ? shm::kMostAttachNs : shm::kMostExchangeNs);
+             g_header->has_brokers != 0 ? shm::kMostAttachNs : shm::kMostExchangeNs);
 }
 
 void AwaitDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, nullptr, {}); }

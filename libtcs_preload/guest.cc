@@ -41,7 +41,7 @@ __thread GuestThread t_thread __attribute__((tls_model("initial-exec")));
 const shm::RunMemory* g_run = nullptr;
 const shm::RunHeader* g_header = nullptr;
 int g_notify_fd = -1;
-int g_porter_fd = -1;
+int g_broker_fd = -1;
 
 GuestThread* CurrentSlow() {
   GuestThread& thread = OwnState();

@@ -52,10 +52,10 @@ struct ProcessState {
   enum Mode : std::uint32_t { kFresh = 0, kAttached = 1, kPassThrough = 2 };
   Mode mode;
   bool has_timer_fds;  // what timer_fds.h remembers is of this process
-  // The process's porter (porter.h): its number, which the kernel clears at its end; how far it is;
-  // and that a thread is making one.
-  std::atomic<int> porter;
-  std::atomic<std::uint32_t> porter_state, makes_porter;
+  // The process's broker (descriptor_broker.h): its number, which the kernel clears at its end; how
+  // far it is; and that a thread is making one.
+  std::atomic<int> broker;
+  std::atomic<std::uint32_t> broker_state, makes_broker;
 };
 
 extern ProcessState* g_process;
@@ -64,7 +64,7 @@ extern const shm::RunMemory* g_run;     // mapped once per process image; forks 
 extern const shm::RunHeader* g_header;  // which begins with this
 extern int
     g_notify_fd;  // write end of the process's notification pipe, close-on-exec, at a high number
-extern int g_porter_fd;  // the porter's connection, likewise; -1: there are none
+extern int g_broker_fd;  // the broker's connection, likewise; -1: there are none
 
 // Attaches the process or thread if it is not yet; null: let the call through.
 GuestThread* CurrentSlow();
@@ -160,6 +160,6 @@ inline bool IsShutDown() { return g_header->shutdown.load(std::memory_order_rela
 [[noreturn]] void DieWithoutCoordinator(const char* what);
 
 // True for a descriptor of the shim's own, which the program must not close or replace.
-inline bool IsOwnDescriptor(int fd) { return fd >= 0 && (fd == g_notify_fd || fd == g_porter_fd); }
+inline bool IsOwnDescriptor(int fd) { return fd >= 0 && (fd == g_notify_fd || fd == g_broker_fd); }
 
 }  // namespace tcs::preload

@@ -18,8 +18,8 @@ inline constexpr char kAliasesVariable[] = "TCS_ALIASES";
 enum class AttachWants : std::uint32_t {
   kSlot = 0,  // of a further thread
   // A slot, and three descriptors: the run's memory, which cannot be written; the process's; and
-  // the write end of the pipe for its notifications. Where processes have porters a fourth: the
-  // socket that its porter answers at.
+  // the write end of the pipe for its notifications. Where processes have brokers a fourth: the
+  // socket that its broker answers at.
   kAll = 1,
   kDdsArea = 2,  // one descriptor (dds_exchange.h), of a process that has joined
 };
@@ -58,21 +58,21 @@ struct PipeMessage {
 };
 static_assert(sizeof(PipeMessage) == 8);
 
-// Where the kernel lets the coordinator copy no descriptors of clients (RunHeader::has_porters)
-// each process has a porter: a process beside it that shares its table of descriptors, and sends
+// Where the kernel lets the coordinator copy no descriptors of clients (RunHeader::has_brokers)
+// each process has a broker: a process beside it that shares its table of descriptors, and sends
 // the coordinator copies of the descriptors that it asks for. One answer for each request, over a
-// SOCK_SEQPACKET socket, with the copy beside it. The porter's first message is an answer with the
-// serial 0: the kernel says which process sent it, and that is the porter.
-struct PorterRequest {
+// SOCK_SEQPACKET socket, with the copy beside it. The broker's first message is an answer with the
+// serial 0: the kernel says which process sent it, and that is the broker.
+struct BrokerRequest {
   std::int32_t number;
   std::uint32_t serial;  // never 0
 };
-static_assert(sizeof(PorterRequest) == 8);
+static_assert(sizeof(BrokerRequest) == 8);
 
-struct PorterAnswer {
+struct BrokerAnswer {
   std::int32_t error;  // an errno; 0: the copy has come with it
   std::uint32_t serial;
 };
-static_assert(sizeof(PorterAnswer) == 8);
+static_assert(sizeof(BrokerAnswer) == 8);
 
 }  // namespace tcs::shm

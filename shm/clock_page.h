@@ -21,7 +21,7 @@ inline constexpr int kAdjustBits = 48;
 // So much of what a thread executes may be its exchange with the coordinator, both ways, each time:
 // virtual nanoseconds.
 inline constexpr std::int64_t kMostExchangeNs = 50'000;
-inline constexpr std::int64_t kMostAttachNs = 20'000'000;  // where a porter is made on the way
+inline constexpr std::int64_t kMostAttachNs = 20'000'000;  // where a broker is made on the way
 
 // For who works on a page as it was at one instant, whatever others write there meanwhile.
 inline void CopyPage(const ClockPage& from, ClockPage* to) {

@@ -433,7 +433,7 @@ struct alignas(64) RunHeader {
   // shim sees begins with kCall.
   std::uint32_t gates_only;
   std::uint32_t preempts;     // 1: the coordinator sends kPreemptionSignal
-  std::uint32_t has_porters;  // 1: each process has one (attach_protocol.h)
+  std::uint32_t has_brokers;  // 1: each process has one (attach_protocol.h)
   // 1: each robot has abstract names of its own (a network namespace).
   std::uint32_t names_by_robot;
   // 1: threads note the datagrams that they send and receive, and sleeps that they need not ask

@@ -35,7 +35,7 @@ bool MayHaveBeenReplaced(const Task& task) {
   const KeptFiles& kept = *task.kept;
   const DescriptorChanges& now = task.process->changes;
   const bool asks_kernel =
-      task.process->porter == nullptr && (kept.is_raw || kept.keep == shm::KeepFiles::kForCall);
+      task.process->broker == nullptr && (kept.is_raw || kept.keep == shm::KeepFiles::kForCall);
   return asks_kernel ? kept.since != now : kept.since.by_calls != now.by_calls;
 }
 

@@ -20,8 +20,8 @@ namespace tcs {
 
 class GuardedCalls {
  public:
-  // tcsim's own processes, and what tells which processes are porters beside programs: no signal is
-  // meant for porters.
+  // tcsim's own processes, and what tells which processes are brokers beside programs: no signal is
+  // meant for brokers.
   void Guard(std::vector<pid_t> own, std::function<bool(pid_t)> is_beside) {
     guarded_ = std::move(own);
     is_beside_ = std::move(is_beside);

@@ -161,7 +161,7 @@ bool Spawns::TakeInChild(Task& maker, const CloneCall& call, Moment moment) {
   for (const pid_t pid : ChildrenOf(parent)) {
     const char state = ThreadState(pid);
     if (state == 'X' || state == 'Z' || run_.table.LivingProcess(pid) != nullptr ||
-        run_.table.IsPorter(pid) || parts_.unknown_children.living().contains(pid)) {
+        run_.table.IsBroker(pid) || parts_.unknown_children.living().contains(pid)) {
       continue;
     }
     Task& child = AddChild(maker, pid, moment.at);

@@ -154,7 +154,7 @@ void Setup::TellOfMissingRights() const {
         "longer: " +
         WhyNoRealTime(all_.real_time) + "; to have it, " + MendOfRealTime(all_.real_time));
   }
-  if (run_.has_porters) {
+  if (run_.has_brokers) {
     run_.options.on_notice(
         std::string("pidfd_getfd is refused here, so a process beside each program hands over its "
                     "descriptors and the run takes longer") +
@@ -196,7 +196,7 @@ std::string Setup::PrepareMemory() {
   run_.header->counter_ticks_per_ns_q32 = CounterRate();
   run_.header->gates_only = run_.gates_only ? 1 : 0;
   run_.header->preempts = run_.SendsToGates() || SpinWaits::AsksThreads(run_) ? 1 : 0;
-  run_.header->has_porters = run_.has_porters ? 1 : 0;
+  run_.header->has_brokers = run_.has_brokers ? 1 : 0;
   run_.header->notes_activity = all_.answers.is_open() ? 1 : 0;
   run_.header->names_by_robot = run_.scenario.network.has_value() ? 1 : 0;
   return {};
@@ -262,7 +262,7 @@ std::string Setup::PrepareHostCpu() {
   all_.reactor.Add(all_.host_cpu.detector().end_fd(), EPOLLIN, {Tag::kDetectorEnd});
   std::vector<pid_t> own = GuardsOf(getpid());
   own.insert(own.end(), {getpid(), all_.host_cpu.detector().pid()});
-  all_.guard.Guard(std::move(own), [this](pid_t pid) { return run_.table.IsPorter(pid); });
+  all_.guard.Guard(std::move(own), [this](pid_t pid) { return run_.table.IsBroker(pid); });
   return {};
 }
 

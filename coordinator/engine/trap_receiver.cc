@@ -86,7 +86,7 @@ Reactor::Found TrapReceiver::Arrived(int listener, Moment moment) {
     if (by != nullptr) all_.spawns.MakerSpeaks(*by, moment);
     // Nobody else may have the process's descriptors when they are closed.
     Process* process = run_.table.LivingProcess(ProcessOfThread(call->tid));
-    if (process != nullptr && process->porter != nullptr) process->porter->End();
+    if (process != nullptr && process->broker != nullptr) process->broker->End();
     all_.guard.LetThrough(*call);
     return {};
   }

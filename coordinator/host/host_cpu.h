@@ -92,7 +92,7 @@ class HostCpu {
   static void FollowOrigin(HostThread& thread);
   // It goes out of a gate next, and may say what that took.
   static void AllowWay(HostThread& thread);
-  // It goes out of its first one, and has had a porter made on the way.
+  // It goes out of its first one, and has had a broker made on the way.
   static void AllowAttach(HostThread& thread);
   // What a thread has computed since it was last charged `charged`, by its CPU clock: while it was
   // not dispatched.

@@ -108,8 +108,8 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   const bool wants_all = hello.wants == shm::AttachWants::kAll;
   if (process.violates_protocol) return false;
   if (process.link == nullptr && wants_all) Connect(process);
-  UniqueFd porters_end;
-  if (wants_all && run_.has_porters && !(porters_end = GivePorter(process))) {
+  UniqueFd brokers_end;
+  if (wants_all && run_.has_brokers && !(brokers_end = GiveBroker(process))) {
     return RefuseForFiles(connection);
   }
   if (process.link == nullptr) return RefuseForFiles(connection);
@@ -121,7 +121,7 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   task.slot_memory = &process.link->SlotAt(task.slot);
   task.metered.page = &task.slot_memory->clock;
   HostCpu::AllowWay(task);
-  if (porters_end) HostCpu::AllowAttach(task);
+  if (brokers_end) HostCpu::AllowAttach(task);
   if (!run_.turn.IsOf(task)) parts_.cpu.active().HoldUnknown(task);
   if (hello.tid == hello.pid) {
     process.is_bare = false;
@@ -130,8 +130,8 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   PlaceAtGate(task, moment.at, !std::exchange(task.is_adopted, false));
   task.can_be_stopped = true;
   const int fds[shm::kMostAttachFds] = {memory_fd_, process.link->memory_fd(),
-                                        process.link->notify_fd(), porters_end.get()};
-  const std::size_t count = !wants_all ? 0 : porters_end ? 4 : 3;
+                                        process.link->notify_fd(), brokers_end.get()};
+  const std::size_t count = !wants_all ? 0 : brokers_end ? 4 : 3;
   Accept(connection, static_cast<std::uint32_t>(task.slot), std::span(fds, count));
   return true;
 }
@@ -230,15 +230,15 @@ void Registration::Connect(Process& process) {
   parts_.reactor.Add(process.link->incoming_fd(), EPOLLIN, {Tag::kPipe, process.index});
 }
 
-// The end of a connection for the porter that it is about to make; none: errno is set.
-UniqueFd Registration::GivePorter(Process& process) {
-  process.porter.reset();  // of the program before
-  process.porter = Porter::Make([this, name = process.name] {
+// The end of a connection for the broker that it is about to make; none: errno is set.
+UniqueFd Registration::GiveBroker(Process& process) {
+  process.broker.reset();  // of the program before
+  process.broker = DescriptorBroker::Make([this, name = process.name] {
     run_.Warn(name +
-              ": the process that hands over its descriptors (tcs-porter) was killed or stopped, "
+              ": the process that hands over its descriptors (tcs-broker) was killed or stopped, "
               "so its waits take real time until the program's next call");
   });
-  return process.porter == nullptr ? UniqueFd() : process.porter->TakeClientsEnd();
+  return process.broker == nullptr ? UniqueFd() : process.broker->TakeClientsEnd();
 }
 
 // Ready for its first dispatch; or for the first of another program. `is_first`: it had no place.

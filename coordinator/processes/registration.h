@@ -91,7 +91,7 @@ class Registration {
   void TakeEndWord(Task& task, std::uint64_t address);
   void GiveDdsArea(int connection, pid_t pid);
   void Connect(Process& process);
-  UniqueFd GivePorter(Process& process);
+  UniqueFd GiveBroker(Process& process);
   void PlaceAtGate(Task& task, VirtualTime at, bool is_first);
 
   const Parts parts_;

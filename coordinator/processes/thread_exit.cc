@@ -87,7 +87,7 @@ void ThreadExit::ProcessEnded(std::uint32_t index, Moment moment) {
   EndThreadsOf(process, nullptr, moment);
   UsageBook::Keep(process);
   process.timer_fds.clear();
-  process.porter.reset();
+  process.broker.reset();
   reactor_.Remove(process.pidfd.get());
   process.pidfd.Reset();
   if (process.link != nullptr) ended_links_.push_back(std::move(process.link));

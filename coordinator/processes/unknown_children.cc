@@ -25,7 +25,7 @@ void UnknownChildren::LookFor(const Process& parent) {
     if (living_.contains(pid) || untaken_.contains(pid)) continue;
     const bool known = std::any_of(table_.processes().begin(), table_.processes().end(),
                                    [pid](const Process& p) { return p.pid == pid; });
-    if (known || table_.IsPorter(pid)) continue;
+    if (known || table_.IsBroker(pid)) continue;
     UniqueFd pidfd(OpenPidfd(pid));
     if (!pidfd) continue;
     reactor_.Add(pidfd.get(), EPOLLIN, {Tag::kUnknownChild, static_cast<std::uint32_t>(pid)});

@@ -37,7 +37,7 @@ bool MayBeFullOf(std::int64_t bytes, std::int64_t used) {
 }  // namespace
 
 UniqueFd CopyOfDescriptor(const Process& process, int number) {
-  if (process.porter != nullptr) return process.porter->CopyOf(number);
+  if (process.broker != nullptr) return process.broker->CopyOf(number);
   return UniqueFd(DuplicateFd(process.pidfd.get(), number));
 }
 

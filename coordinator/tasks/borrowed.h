@@ -12,8 +12,8 @@
 
 namespace tcs {
 
-// A copy of the process's descriptor; none: errno is set. Where porters hand them over
-// (os/porter.h) this waits for the process's.
+// A copy of the process's descriptor; none: errno is set. Where brokers hand them over
+// (os/descriptor_broker.h) this waits for the process's.
 UniqueFd CopyOfDescriptor(const Process& process, int number);
 
 class Borrowed {

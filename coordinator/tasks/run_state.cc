@@ -5,11 +5,11 @@
 namespace tcs {
 
 RunState::RunState(const Scenario& its_scenario, const RunOptions& its_options, bool only_gates,
-                   bool with_porters)
+                   bool with_brokers)
     : scenario(its_scenario),
       options(its_options),
-      gates_only(only_gates || with_porters),
-      has_porters(with_porters),
+      gates_only(only_gates || with_brokers),
+      has_brokers(with_brokers),
       table([](pid_t pid) { return ThreadState(pid) != 'Z'; }),
       root(scenario.drift_bound, VirtualTime() + scenario.duration),
       end(VirtualTime() + scenario.duration) {}

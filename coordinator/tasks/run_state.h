@@ -23,14 +23,14 @@
 namespace tcs {
 
 struct RunState {
-  // Where each process has a porter there are only gates.
+  // Where each process has a broker there are only gates.
   RunState(const Scenario& its_scenario, const RunOptions& its_options, bool only_gates,
-           bool with_porters = false);
+           bool with_brokers = false);
 
   const Scenario scenario;
   const RunOptions options;
   const bool gates_only;   // there is no right to real-time priorities, or it is not used
-  const bool has_porters;  // each process has one (os/porter.h): pidfd_getfd is refused
+  const bool has_brokers;  // each process has one (os/descriptor_broker.h): pidfd_getfd is refused
   RunReport report;
 
   TaskTable table;

@@ -15,7 +15,7 @@
 
 #include "coordinator/host/host_thread.h"
 #include "coordinator/os/clone_call.h"
-#include "coordinator/os/porter.h"
+#include "coordinator/os/descriptor_broker.h"
 #include "coordinator/policy/robot_scheduler.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/port/proc_files.h"
@@ -199,7 +199,8 @@ struct Process {
   pid_t own_pid = 0;                // by which it knows itself (os/own_number.h),
   std::uint64_t pid_namespace = 0;  // and where; 0: in tcsim's
   UniqueFd pidfd;
-  std::unique_ptr<Porter> porter;  // null where there are none, and before its first attach
+  std::unique_ptr<DescriptorBroker>
+      broker;  // null where there are none, and before its first attach
   Robot* robot = nullptr;
   std::string name;
   int priority = 0;

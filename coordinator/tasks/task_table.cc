@@ -102,9 +102,9 @@ bool TaskTable::HasChild(const Process& parent) const {
   });
 }
 
-bool TaskTable::IsPorter(pid_t pid) const {
+bool TaskTable::IsBroker(pid_t pid) const {
   return std::any_of(processes_.begin(), processes_.end(), [pid](const Process& process) {
-    return process.porter != nullptr && process.porter->Is(pid);
+    return process.broker != nullptr && process.broker->Is(pid);
   });
 }
 

@@ -50,8 +50,8 @@ class TaskTable {
   // A process's threads that live, in the order in which the kernel considers them for a signal:
   // the main thread first, wherever its place is.
   std::vector<Task*> ThreadsOf(const Process& process);
-  // It is the porter of one (os/porter.h).
-  bool IsPorter(pid_t pid) const;
+  // It is the broker of one (os/descriptor_broker.h).
+  bool IsBroker(pid_t pid) const;
   // One of its children lives.
   bool HasChild(const Process& parent) const;
 

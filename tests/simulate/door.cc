@@ -12,8 +12,8 @@
 #include <atomic>
 #include <cstdint>
 
+#include "libtcs_preload/descriptor_broker.h"
 #include "libtcs_preload/guest.h"
-#include "libtcs_preload/porter.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/spinning/pauses.h"
 #include "libtcs_preload/timer_fds.h"
@@ -71,7 +71,7 @@ __thread GuestThread t_thread __attribute__((tls_model("initial-exec")));
 const shm::RunMemory* g_run = nullptr;
 const shm::RunHeader* g_header = nullptr;
 int g_notify_fd = -1;
-int g_porter_fd = -1;
+int g_broker_fd = -1;
 
 long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
   Kernel& kernel = Kernel::This();
@@ -147,7 +147,7 @@ void* SimulatedReal(const char* name) {
 // Parts of the shim that a simulated program has no use for.
 GuestThread* CurrentSlow() { return nullptr; }
 GuestThread& StateInSharedStorage() { return t_thread; }
-void MakePorter() {}
+void MakeBroker() {}
 void NoteWhetherInLoop(GuestThread&, std::uintptr_t) {}
 bool IsTimerFd(int) { return false; }
 

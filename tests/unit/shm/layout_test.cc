@@ -19,7 +19,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(RunHeader, accounting), 24u);
   EXPECT_EQ(offsetof(RunHeader, shutdown), 28u);
   EXPECT_EQ(offsetof(RunHeader, sync), 52u);
-  EXPECT_EQ(offsetof(RunHeader, has_porters), 76u);
+  EXPECT_EQ(offsetof(RunHeader, has_brokers), 76u);
   EXPECT_EQ(offsetof(RunHeader, names_by_robot), 80u);
   EXPECT_EQ(offsetof(RunHeader, notes_activity), 84u);
   EXPECT_EQ(offsetof(RunHeader, turns_beside), 88u);

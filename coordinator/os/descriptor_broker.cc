@@ -1,4 +1,4 @@
-#include "coordinator/os/porter.h"
+#include "coordinator/os/descriptor_broker.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -40,23 +40,23 @@ bool PollUntil(pollfd (&fds)[count], std::int64_t until_ms) {
 
 }  // namespace
 
-Porter::Porter(UniqueFd ours, UniqueFd theirs, std::function<void()> is_lost)
+DescriptorBroker::DescriptorBroker(UniqueFd ours, UniqueFd theirs, std::function<void()> is_lost)
     : socket_(std::move(ours)), clients_end_(std::move(theirs)), is_lost_(std::move(is_lost)) {}
 
-std::unique_ptr<Porter> Porter::Make(std::function<void()> is_lost) {
+std::unique_ptr<DescriptorBroker> DescriptorBroker::Make(std::function<void()> is_lost) {
   std::optional<SocketPair> sockets = SocketPair::Make();
   const int on = 1;
   if (!sockets.has_value() ||
       setsockopt(sockets->ours.get(), SOL_SOCKET, SO_PASSCRED, &on, sizeof on) != 0) {
     return nullptr;
   }
-  return std::unique_ptr<Porter>(
-      new Porter(std::move(sockets->ours), std::move(sockets->theirs), std::move(is_lost)));
+  return std::unique_ptr<DescriptorBroker>(new DescriptorBroker(
+      std::move(sockets->ours), std::move(sockets->theirs), std::move(is_lost)));
 }
 
-// A porter has said that it is there. Whoever else sends that is taken for one, and is killed like
+// A broker has said that it is there. Whoever else sends that is taken for one, and is killed like
 // one; but not who is not of this run.
-void Porter::Adopt(pid_t sender) {
+void DescriptorBroker::Adopt(pid_t sender) {
   if (sender <= 0 || !DescendsFrom(sender, getpid())) return;
   Kill();
   pidfd_.Reset(OpenPidfd(sender));
@@ -65,21 +65,21 @@ void Porter::Adopt(pid_t sender) {
 
 // What has come unasked: the first message of a new one. Answers that nobody waits for any more are
 // dropped.
-void Porter::Hear() {
+void DescriptorBroker::Hear() {
   for (int message = 0; message < kMostUnasked; ++message) {
-    shm::PorterAnswer answer{};
+    shm::BrokerAnswer answer{};
     const Passed passed = ReceivePassed(socket_.get(), &answer, sizeof answer, MSG_DONTWAIT);
     if (passed.size <= 0) return;
     if (passed.size == sizeof answer && answer.serial == 0) Adopt(passed.sender);
   }
 }
 
-bool Porter::Is(pid_t pid) {
+bool DescriptorBroker::Is(pid_t pid) {
   Hear();
   return pid_ != 0 && pid == pid_;
 }
 
-UniqueFd Porter::Await(std::uint32_t serial) {
+UniqueFd DescriptorBroker::Await(std::uint32_t serial) {
   const std::int64_t starved_ms = NowMs() + kMostStarvedMs;
   std::int64_t until_ms = NowMs() + kMostWaitMs;
   for (;;) {
@@ -100,7 +100,7 @@ UniqueFd Porter::Await(std::uint32_t serial) {
       errno = ESRCH;
       return {};
     }
-    shm::PorterAnswer answer{};
+    shm::BrokerAnswer answer{};
     Passed passed = ReceivePassed(socket_.get(), &answer, sizeof answer, MSG_DONTWAIT);
     if (passed.size == sizeof answer && answer.serial == 0) Adopt(passed.sender);
     if (passed.size == 0 || (passed.size > 0 && answer.serial == 0)) {
@@ -113,14 +113,14 @@ UniqueFd Porter::Await(std::uint32_t serial) {
   }
 }
 
-UniqueFd Porter::CopyOf(int number) {
+UniqueFd DescriptorBroker::CopyOf(int number) {
   Hear();
   if (!pidfd_) {
     errno = ESRCH;
     return {};
   }
   if (++serial_ == 0) ++serial_;
-  const shm::PorterRequest request{number, serial_};
+  const shm::BrokerRequest request{number, serial_};
   const bool is_sent =
       send(socket_.get(), &request, sizeof request, MSG_NOSIGNAL | MSG_DONTWAIT) == sizeof request;
   UniqueFd copy = is_sent ? Await(serial_) : UniqueFd();
@@ -133,12 +133,12 @@ UniqueFd Porter::CopyOf(int number) {
   return {};
 }
 
-void Porter::End() {
+void DescriptorBroker::End() {
   Hear();
   Kill();
 }
 
-void Porter::Kill() {
+void DescriptorBroker::Kill() {
   pid_ = 0;
   const UniqueFd pidfd = std::move(pidfd_);
   if (!pidfd) return;

@@ -1,4 +1,4 @@
-#include "coordinator/os/porter.h"
+#include "coordinator/os/descriptor_broker.h"
 
 #include <errno.h>
 #include <gtest/gtest.h>
@@ -20,23 +20,23 @@ namespace {
 
 // The other end of the connection is with a child of this process, which hands over what it has
 // inherited.
-class PorterTest : public testing::Test {
+class DescriptorBrokerTest : public testing::Test {
  protected:
-  void SetUp() override { ASSERT_NE(porter_, nullptr); }
+  void SetUp() override { ASSERT_NE(broker_, nullptr); }
   void TearDown() override {
     if (child_ <= 0) return;
     kill(child_, SIGKILL);
     waitpid(child_, nullptr, 0);
   }
 
-  static bool Answer(int socket, shm::PorterAnswer answer, int fd) {
+  static bool Answer(int socket, shm::BrokerAnswer answer, int fd) {
     PassedMessage message(&answer, sizeof answer, std::span(&fd, fd < 0 ? 0 : 1));
     return sendmsg(socket, message.get(), MSG_NOSIGNAL) == sizeof answer;
   }
   // Computes for so long before it answers the first time, as one does that gets no processor.
   [[noreturn]] static void HandOver(int socket, int first_s) {
     Answer(socket, {0, 0}, -1);
-    shm::PorterRequest request;
+    shm::BrokerRequest request;
     while (read(socket, &request, sizeof request) == sizeof request) {
       for (const time_t until = time(nullptr) + std::exchange(first_s, 0); time(nullptr) < until;) {
       }
@@ -47,81 +47,81 @@ class PorterTest : public testing::Test {
     _exit(0);
   }
   void Begin(int first_s = 0) {
-    const UniqueFd end = porter_->TakeClientsEnd();
+    const UniqueFd end = broker_->TakeClientsEnd();
     child_ = fork();
     if (child_ == 0) HandOver(end.get(), first_s);
-    while (!porter_->Is(child_)) usleep(1000);
+    while (!broker_->Is(child_)) usleep(1000);
   }
 
   int lost_ = 0;
-  std::unique_ptr<Porter> porter_ = Porter::Make([this] { ++lost_; });
+  std::unique_ptr<DescriptorBroker> broker_ = DescriptorBroker::Make([this] { ++lost_; });
   const UniqueFd file_{eventfd(0, 0)};
   pid_t child_ = -1;
 };
 
-TEST_F(PorterTest, BeforeItHasComeThereIsNothingToBeHadAndNothingLost) {
-  EXPECT_FALSE(porter_->CopyOf(file_.get()));
+TEST_F(DescriptorBrokerTest, BeforeItHasComeThereIsNothingToBeHadAndNothingLost) {
+  EXPECT_FALSE(broker_->CopyOf(file_.get()));
   EXPECT_EQ(errno, ESRCH);
-  porter_->End();
+  broker_->End();
   EXPECT_EQ(lost_, 0);
 }
 
-TEST_F(PorterTest, ItHandsOverWhatTheProcessHasUnderANumber) {
+TEST_F(DescriptorBrokerTest, ItHandsOverWhatTheProcessHasUnderANumber) {
   Begin();
   for (int turn = 0; turn < 3; ++turn) {
-    const UniqueFd copy = porter_->CopyOf(file_.get());
+    const UniqueFd copy = broker_->CopyOf(file_.get());
     ASSERT_TRUE(copy);
     EXPECT_NE(copy.get(), file_.get());
     EXPECT_TRUE(IsSameFileBySet(copy.get(), file_.get()));
   }
-  EXPECT_FALSE(porter_->CopyOf(999));
+  EXPECT_FALSE(broker_->CopyOf(999));
   EXPECT_EQ(errno, EBADF);
-  EXPECT_TRUE(porter_->CopyOf(file_.get()));
+  EXPECT_TRUE(broker_->CopyOf(file_.get()));
   EXPECT_EQ(lost_, 0);
 }
 
-TEST_F(PorterTest, OneThatWasKilledIsMissedOnce) {
+TEST_F(DescriptorBrokerTest, OneThatWasKilledIsMissedOnce) {
   Begin();
   kill(child_, SIGKILL);
-  EXPECT_FALSE(porter_->CopyOf(file_.get()));
+  EXPECT_FALSE(broker_->CopyOf(file_.get()));
   EXPECT_EQ(errno, ESRCH);
   EXPECT_EQ(lost_, 1);
-  EXPECT_FALSE(porter_->CopyOf(file_.get()));
+  EXPECT_FALSE(broker_->CopyOf(file_.get()));
   EXPECT_EQ(lost_, 1);
 }
 
-TEST_F(PorterTest, OneThatHasGoneIsMissedLikeOneThatGoes) {
+TEST_F(DescriptorBrokerTest, OneThatHasGoneIsMissedLikeOneThatGoes) {
   Begin();
   kill(child_, SIGKILL);
   siginfo_t info;
   waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOWAIT);
-  EXPECT_FALSE(porter_->CopyOf(file_.get()));
+  EXPECT_FALSE(broker_->CopyOf(file_.get()));
   EXPECT_EQ(errno, ESRCH);
   EXPECT_EQ(lost_, 1);
 }
 
-TEST_F(PorterTest, OneThatIsStoppedIsNotWaitedForForEver) {
+TEST_F(DescriptorBrokerTest, OneThatIsStoppedIsNotWaitedForForEver) {
   Begin();
   kill(child_, SIGSTOP);
-  EXPECT_FALSE(porter_->CopyOf(file_.get()));
+  EXPECT_FALSE(broker_->CopyOf(file_.get()));
   EXPECT_EQ(errno, ETIMEDOUT);
   EXPECT_EQ(lost_, 1);
   EXPECT_EQ(ThreadState(child_), 'X');
 }
 
-TEST_F(PorterTest, OneThatWouldRunIsWaitedFor) {
+TEST_F(DescriptorBrokerTest, OneThatWouldRunIsWaitedFor) {
   Begin(4);  // at least 3 s
-  EXPECT_TRUE(porter_->CopyOf(file_.get()));
+  EXPECT_TRUE(broker_->CopyOf(file_.get()));
   EXPECT_EQ(lost_, 0);
 }
 
-TEST_F(PorterTest, ItIsGoneAndReapedOnceItWasEnded) {
+TEST_F(DescriptorBrokerTest, ItIsGoneAndReapedOnceItWasEnded) {
   Begin();
-  porter_->End();
+  broker_->End();
   EXPECT_EQ(ThreadState(child_), 'X');
   EXPECT_EQ(waitpid(child_, nullptr, WNOHANG), -1);
   EXPECT_EQ(errno, ECHILD);
-  EXPECT_FALSE(porter_->Is(child_));
+  EXPECT_FALSE(broker_->Is(child_));
   EXPECT_EQ(lost_, 0);
   child_ = -1;
 }

@@ -1,4 +1,4 @@
-#include "libtcs_preload/porter.h"
+#include "libtcs_preload/descriptor_broker.h"
 
 #include <errno.h>
 #include <linux/futex.h>
@@ -20,9 +20,9 @@ namespace {
 constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t
 constexpr std::size_t kStackSize = 8192;
 // Of the two processes that are made; at their ends they have no stack any more.
-alignas(16) char g_parents_stack[kStackSize], g_porters_stack[kStackSize];
+alignas(16) char g_parents_stack[kStackSize], g_brokers_stack[kStackSize];
 
-enum PorterState : std::uint32_t {
+enum BrokerState : std::uint32_t {
   kNotYet = 0,
   kIsThere = 1,
   kIsDeaf = 2,  // the program has closed the connection by a raw call: there can be none any more
@@ -60,7 +60,7 @@ constexpr long kShares = CLONE_VM | CLONE_FILES | CLONE_UNTRACED;
 }
 
 // False if nobody is there any more to get it.
-bool Answer(shm::PorterAnswer answer, int fd) {
+bool Answer(shm::BrokerAnswer answer, int fd) {
   iovec iov{&answer, sizeof answer};
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof fd)] = {};
   msghdr message{};
@@ -75,7 +75,7 @@ bool Answer(shm::PorterAnswer answer, int fd) {
     header->cmsg_len = CMSG_LEN(sizeof fd);
     *reinterpret_cast<int*>(CMSG_DATA(header)) = fd;
   }
-  const long sent = RawSyscall(SYS_sendmsg, g_porter_fd, Arg(&message), MSG_NOSIGNAL);
+  const long sent = RawSyscall(SYS_sendmsg, g_broker_fd, Arg(&message), MSG_NOSIGNAL);
   if (sent == static_cast<long>(sizeof answer)) return true;
   return fd >= 0 && Answer({static_cast<std::int32_t>(-sent), answer.serial}, -1);
 }
@@ -83,13 +83,13 @@ bool Answer(shm::PorterAnswer answer, int fd) {
 [[noreturn]] void HandOver() {
   // Signals to the program's group, and to those of its terminal, are not for it.
   RawSyscall(SYS_setsid);
-  RawSyscall(SYS_prctl, PR_SET_NAME, Arg("tcs-porter"));
+  RawSyscall(SYS_prctl, PR_SET_NAME, Arg("tcs-broker"));
   RawSyscall(SYS_chdir, Arg("/"));
   const bool is_heard = Answer({0, 0}, -1);
-  g_process->porter_state.store(is_heard ? kIsThere : kIsDeaf);
+  g_process->broker_state.store(is_heard ? kIsThere : kIsDeaf);
   while (is_heard) {
-    shm::PorterRequest request{};
-    const long n = RawSyscall(SYS_read, g_porter_fd, Arg(&request), sizeof request);
+    shm::BrokerRequest request{};
+    const long n = RawSyscall(SYS_read, g_broker_fd, Arg(&request), sizeof request);
     if (n != static_cast<long>(sizeof request)) break;
     const bool answered = request.number < 0 ? Answer({EBADF, request.serial}, -1)
                                              : Answer({0, request.serial}, request.number);
@@ -98,16 +98,16 @@ bool Answer(shm::PorterAnswer answer, int fd) {
   End(0);
 }
 
-// Its end makes the porter an orphan. It waits until the porter has told the coordinator who it is:
+// Its end makes the broker an orphan. It waits until the broker has told the coordinator who it is:
 // meanwhile the thread that makes them stands in vfork.
 [[noreturn]] void MakeOrphan() {
   constexpr timespec kTurn{0, 200'000};
-  const std::atomic<std::uint32_t>& state = g_process->porter_state;
-  const long porter = Clone(kShares, g_porters_stack, HandOver, &g_process->porter);
-  while (porter > 0 && state.load() == kNotYet && g_process->porter.load() != 0) {
+  const std::atomic<std::uint32_t>& state = g_process->broker_state;
+  const long broker = Clone(kShares, g_brokers_stack, HandOver, &g_process->broker);
+  while (broker > 0 && state.load() == kNotYet && g_process->broker.load() != 0) {
     RawSyscall(SYS_futex, Arg(&state), FUTEX_WAIT, kNotYet, Arg(&kTurn));
   }
-  End(porter > 0 ? 0 : 1);
+  End(broker > 0 ? 0 : 1);
 }
 
 // These wait without sleeping: a dispatched thread that sleeps in a call which nobody knows is
@@ -124,14 +124,14 @@ int Reap(long child) {
 
 }  // namespace
 
-void MakePorter() {
-  if (g_porter_fd < 0 || g_process->porter_state.load() == kIsDeaf) return;
-  if (g_process->makes_porter.exchange(1) != 0) return;
+void MakeBroker() {
+  if (g_broker_fd < 0 || g_process->broker_state.load() == kIsDeaf) return;
+  if (g_process->makes_broker.exchange(1) != 0) return;
   // Both have this thread's mask.
   const unsigned long all = ~0ul;
   unsigned long before = 0;
   RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before), kSetSize);
-  g_process->porter_state.store(kNotYet);
+  g_process->broker_state.store(kNotYet);
   const long parent = Clone(kShares | CLONE_VFORK, g_parents_stack, MakeOrphan, nullptr);
   if (parent < 0 || Reap(parent) != 0) {
     DieWithoutCoordinator(
@@ -139,7 +139,7 @@ void MakePorter() {
         "processes?)");
   }
   RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&before), 0, kSetSize);
-  g_process->makes_porter.store(0);
+  g_process->makes_broker.store(0);
 }
 
 }  // namespace tcs::preload

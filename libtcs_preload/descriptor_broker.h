@@ -1,4 +1,4 @@
-// Where the kernel lets the coordinator copy no descriptors of clients (RunHeader::has_porters) a
+// Where the kernel lets the coordinator copy no descriptors of clients (RunHeader::has_brokers) a
 // process of the shim's own, beside each client, hands them over (shm/attach_protocol.h). It shares
 // the client's memory and its table of descriptors and nothing else: it is no thread, so a program
 // that counts its threads finds the number that it expects; it is not the program's child, so no
@@ -11,16 +11,16 @@
 
 namespace tcs::preload {
 
-// Makes the process's porter, which answers at g_porter_fd, and returns once it is there. Nothing
+// Makes the process's broker, which answers at g_broker_fd, and returns once it is there. Nothing
 // happens where another thread is at it. Ends the process if there can be none.
 // Async-signal-safe.
-void MakePorter();
+void MakeBroker();
 
 // The same if there is none: the coordinator has ended it because the process was about to execute
 // another program, or another process has ended it. For the beginning of each call.
-inline void KeepPorter() {
-  if (g_header->has_porters != 0 && g_process->porter.load(std::memory_order_relaxed) == 0) {
-    MakePorter();
+inline void KeepBroker() {
+  if (g_header->has_brokers != 0 && g_process->broker.load(std::memory_order_relaxed) == 0) {
+    MakeBroker();
   }
 }
 

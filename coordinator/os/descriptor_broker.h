@@ -1,8 +1,8 @@
-// The coordinator's side of a client's porter (shm/attach_protocol.h): copies of the client's
+// The coordinator's side of a client's broker (shm/attach_protocol.h): copies of the client's
 // descriptors where pidfd_getfd is refused, as by the seccomp profile that Docker has for all
 // containers.
 //
-// The porter shares the client's table of descriptors, and so keeps all of them open: it has to be
+// The broker shares the client's table of descriptors, and so keeps all of them open: it has to be
 // gone before the client executes another program or its end is told to anybody. It is an orphan,
 // which the kernel gives to this process, so that the client has no child that it does not know.
 //
@@ -20,25 +20,25 @@
 
 namespace tcs {
 
-class Porter {
+class DescriptorBroker {
  public:
-  // A connection for a porter that is still to come; null: errno is set. `is_lost` is told each
-  // time that a descriptor cannot be had because the porter does not answer any more.
-  static std::unique_ptr<Porter> Make(std::function<void()> is_lost);
+  // A connection for a broker that is still to come; null: errno is set. `is_lost` is told each
+  // time that a descriptor cannot be had because the broker does not answer any more.
+  static std::unique_ptr<DescriptorBroker> Make(std::function<void()> is_lost);
   // Ends it.
-  ~Porter() { End(); }
-  Porter(const Porter&) = delete;
-  Porter& operator=(const Porter&) = delete;
+  ~DescriptorBroker() { End(); }
+  DescriptorBroker(const DescriptorBroker&) = delete;
+  DescriptorBroker& operator=(const DescriptorBroker&) = delete;
 
   // The client's end, given away once.
   UniqueFd TakeClientsEnd() { return std::move(clients_end_); }
 
   // A copy of the client's descriptor; none: errno is set, EBADF if there is none of that number.
-  // Waits for the porter, which has the processor meanwhile, at most two seconds; a minute where
+  // Waits for the broker, which has the processor meanwhile, at most two seconds; a minute where
   // others of the host keep it from running.
   UniqueFd CopyOf(int number);
 
-  // Whether that process is the porter.
+  // Whether that process is the broker.
   bool Is(pid_t pid);
 
   // Kills it, and waits until it has let go of all descriptors, at most two seconds. Another one
@@ -46,7 +46,7 @@ class Porter {
   void End();
 
  private:
-  Porter(UniqueFd ours, UniqueFd theirs, std::function<void()> is_lost);
+  DescriptorBroker(UniqueFd ours, UniqueFd theirs, std::function<void()> is_lost);
 
   void Hear();
   void Adopt(pid_t sender);
