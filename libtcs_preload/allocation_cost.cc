@@ -30,7 +30,7 @@ GuestThread* Counted() {
 
 // What its last call did to others happened before its clock moves on, where only gates hold it.
 void EndLastCall(GuestThread& thread) {
-  if (g_header->gates_only == 0 || (!thread.in_call && IsDispatched(thread))) return;
+  if (g_header->is_unprivileged == 0 || (!thread.in_call && IsDispatched(thread))) return;
   AwaitTurn(thread);
   thread.in_call = false;
 }

@@ -29,7 +29,7 @@ bool BeganInUnseenCall(GuestThread& thread) {
 }  // namespace
 
 void CountCall(GuestThread& thread, Concern concern) {
-  if (g_header->gates_only != 0) {
+  if (g_header->is_unprivileged != 0) {
     KeepBroker();
     const bool is_fixed = g_header->accounting == shm::Accounting::kFixed;
     const bool has_to_wait = is_fixed && (concern == Concern::kOthers || !IsDispatched(thread));

@@ -40,7 +40,7 @@ bool IsBeyondLimit(int fd) {
 void BeginClosing(int fd) {
   NoteChange();
   NoteCloses(fd);
-  if (g_header == nullptr || g_header->gates_only == 0 || !CanWait(fd)) return;
+  if (g_header == nullptr || g_header->is_unprivileged == 0 || !CanWait(fd)) return;
   if (GuestThread* t = Current(); t != nullptr) BeginChange(*t);
 }
 
@@ -63,7 +63,7 @@ long MayUnlock(long result) {
 long CloseRange(unsigned first, unsigned last, unsigned flags) {
   if (first > last) return -EINVAL;
   NoteChange();
-  if (g_header != nullptr && g_header->gates_only != 0) {
+  if (g_header != nullptr && g_header->is_unprivileged != 0) {
     if (GuestThread* t = Current(); t != nullptr) BeginChange(*t);
   }
   if ((flags & CLOSE_RANGE_CLOEXEC) == 0) {

@@ -33,7 +33,7 @@ constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's b
 // True where its own CPU clock alone tells what the thread computes: others have the processor as
 // it has.
 bool OnlyCpuClockTells(const shm::ClockPage& page) {
-  return g_header->gates_only != 0 && page.ns_per_tick_q32 != 0;
+  return g_header->is_unprivileged != 0 && page.ns_per_tick_q32 != 0;
 }
 
 // Nothing stops the thread in the instant in which it notifies, and no coordinator sleeps until
@@ -67,7 +67,7 @@ class NoHandlers {
  public:
   // `blocked`: by the program, if that is something else than by the thread.
   NoHandlers(shm::ThreadSlot& slot, const unsigned long* blocked) : page_(slot.clock) {
-    if (g_header->gates_only == 0) return;
+    if (g_header->is_unprivileged == 0) return;
     const unsigned long all = ~0ul;
     RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before_), kSetSize);
     slot.blocked_signals = blocked != nullptr ? *blocked : before_;
@@ -85,7 +85,7 @@ class NoHandlers {
   // They may run, but for those of `but`, which have to wait for the destructor. False if they may
   // already.
   bool Allow(unsigned long but) {
-    if (g_header->gates_only == 0 || allows_all_) return false;
+    if (g_header->is_unprivileged == 0 || allows_all_) return false;
     const unsigned long mask = before_ | but;
     RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&mask), 0, kSetSize);
     allows_all_ = mask == before_;
@@ -276,7 +276,7 @@ Reply ExchangeOnce(GuestThread& thread, const Request& request) {
   none.Allow(request.interruptible ? OwnSignalsHeldInWaits() : 0);
   if (!WaitAtGate(slot, request.interruptible ? &handlers : nullptr, charged)) {
     const Ended ended = EndWait(thread);
-    if (g_header->gates_only == 0 && ended != Ended::kByOther) {
+    if (g_header->is_unprivileged == 0 && ended != Ended::kByOther) {
       return Reply{WakeReason::kSignal, {0, 0}};
     }
   }
@@ -296,7 +296,7 @@ struct Interrupted {
     note = slot.note;
     gate = slot.gate.load();
     const Ended ended = gate == shm::kGateOpen ? Ended::kByOther : EndWait(thread);
-    if (ended == Ended::kByOther || g_header->gates_only != 0) {
+    if (ended == Ended::kByOther || g_header->is_unprivileged != 0) {
       gate = shm::kGateOpen;
     } else if (ended == Ended::kWait) {
       gate = shm::kGateOpen;
@@ -366,7 +366,7 @@ void NoteHandler(GuestThread& thread) {
 }
 
 void AwaitTurnOfHandler(GuestThread& thread) {
-  if (g_header->gates_only == 0 || IsShutDown() || !IsAtGate(thread)) return;
+  if (g_header->is_unprivileged == 0 || IsShutDown() || !IsAtGate(thread)) return;
   ++thread.depth;
   Interrupted(thread).PutBack(*thread.slot);
   --thread.depth;

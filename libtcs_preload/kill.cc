@@ -59,7 +59,7 @@ auto SendSignal(Receiver receiver, int signal, std::uint32_t by, Call call) {
 template <class... Args>
 long SendRaw(long number, Args... args) {
   GuestThread* t = IfAttached();
-  if (t != nullptr && g_header->gates_only != 0 && t->slot->signals.load() != 0) AwaitTurn(*t);
+  if (t != nullptr && g_header->is_unprivileged != 0 && t->slot->signals.load() != 0) AwaitTurn(*t);
   return RawSyscall(number, args...);
 }
 

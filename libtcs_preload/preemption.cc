@@ -66,7 +66,7 @@ void StopHere(int signal, siginfo_t* info, void* context) {
   if (IsAtGate(thread)) {
     // With levels a signal of the program's has brought it here, whose handler is to run when the
     // thread is dispatched. Without them the handler ends the wait.
-    if (g_header->gates_only == 0) AwaitDispatch(thread);
+    if (g_header->is_unprivileged == 0) AwaitDispatch(thread);
     return;
   }
   const auto* blocked = reinterpret_cast<const unsigned long*>(&interrupted.uc_sigmask);

@@ -42,7 +42,7 @@ inline unsigned long OwnSignals() {
 // Those of them that are blocked while a thread waits. With levels a thread that waits has to hear
 // of it: a signal that has ended its wait may have come, and have its handler run too early.
 inline unsigned long OwnSignalsHeldInWaits() {
-  return g_header != nullptr && g_header->gates_only != 0 ? OwnSignals() : 0;
+  return g_header != nullptr && g_header->is_unprivileged != 0 ? OwnSignals() : 0;
 }
 
 }  // namespace tcs::preload

@@ -29,7 +29,7 @@ namespace tcs::preload {
 // Who waits to write may find room after a read. Asked only where that has the thread wait for its
 // next call (CountCall).
 inline void BeginTaking(GuestThread& t, int fd, bool socket) {
-  if (socket && g_header->gates_only != 0 && !ReadingMakesRoom(fd)) return;
+  if (socket && g_header->is_unprivileged != 0 && !ReadingMakesRoom(fd)) return;
   BeginChange(t);
 }
 

@@ -45,7 +45,7 @@ Now ReadNowSlowly(GuestThread& thread) {
   for (;;) {
     const ClockReading r = ReadChecked(page);
     // A handler that has interrupted an exchange would end its wait by another one.
-    const bool may_ask = thread.depth == 0 || (g_header->gates_only != 0 && !IsAtGate(thread));
+    const bool may_ask = thread.depth == 0 || (g_header->is_unprivileged != 0 && !IsAtGate(thread));
     const Now now = Show(page, r);
     if (now.shown_ns < r.horizon_ns || !may_ask || IsShutDown()) return now;
     Exchange(thread, Request{.kind = NotificationKind::kHorizon});

@@ -107,8 +107,8 @@ enum class NotificationKind : std::uint32_t {
   kDdsSockets =
       30,  // its DDS uses sockets, though it was to use dds_exchange.h; args[0]: WhySockets
   kKernelWait = 31,  // in its next system call the kernel may hold the thread; see kernel_waiters
-  kCall = 33,        // a call begins: what the thread did before is done (RunHeader::gates_only)
-  kPreempted = 34,   // the thread computes, and has got kPreemptionSignal
+  kCall = 33,  // a call begins: what the thread did before is done (RunHeader::is_unprivileged)
+  kPreempted = 34,  // the thread computes, and has got kPreemptionSignal
   // Of sockets that are known to be local to one robot (local_sockets.h).
   kBinds = 35,  // the thread is about to bind a datagram socket to an abstract name; args[0]: the
                 // socket's cookie, args[1]: the name's hash
@@ -431,7 +431,7 @@ struct alignas(64) RunHeader {
   std::atomic<std::uint32_t> kernel_waiters;  // the same for its kKernelWaits
   // 1: only their gates keep threads that are not dispatched from running on: each call that the
   // shim sees begins with kCall.
-  std::uint32_t gates_only;
+  std::uint32_t is_unprivileged;
   std::uint32_t preempts;     // 1: the coordinator sends kPreemptionSignal
   std::uint32_t has_brokers;  // 1: each process has one (attach_protocol.h)
   // 1: each robot has abstract names of its own (a network namespace).

@@ -10,7 +10,7 @@ namespace tcs {
 
 bool SignalCalls::Poll() {
   const bool awaited =
-      run_.gates_only || waker_.counts().for_signals() > 0 || waker_.counts().for_stops() > 0;
+      run_.is_unprivileged || waker_.counts().for_signals() > 0 || waker_.counts().for_stops() > 0;
   // The call in which the kernel holds a thread may be what has it send one: to the holder of a
   // lease, say, for whom the thread waits.
   const bool is_held_anew = waker_.unseen() > std::exchange(unseen_, waker_.unseen());

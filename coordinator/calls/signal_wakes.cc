@@ -78,7 +78,7 @@ void SignalWakes::WakeForSignal(Process& process, const SentSignal& sent, Moment
 // the result.
 void SignalWakes::AnswerAhead(Task& task) {
   // Without levels the kernel keeps the signal until the call is answered (os/trap.cc).
-  if (run_.gates_only || run_.turn.IsOf(task) || task.trap_id == 0 || task.trap_continues ||
+  if (run_.is_unprivileged || run_.turn.IsOf(task) || task.trap_id == 0 || task.trap_continues ||
       task.state != TaskState::kReady || EndsBySignal(task.trap_result)) {
     return;
   }
@@ -88,7 +88,7 @@ void SignalWakes::AnswerAhead(Task& task) {
 }
 
 bool SignalWakes::HasSignalForTrapped(Task& task) const {
-  if (!run_.gates_only || run_.turn.lasts() || !task.wait->is_in_trapped_call) return false;
+  if (!run_.is_unprivileged || run_.turn.lasts() || !task.wait->is_in_trapped_call) return false;
   const SignalSets sets = SignalsOf(run_, task);
   return Deliverable(sets.own_pending | sets.shared_pending, sets, BlockedOf(task, sets)) != 0 &&
          IsMarkedForSignal(task.tid);

@@ -184,7 +184,7 @@ class Page {
     now_ns_ = Ns(time, "virtual_ns");
     lines_.Add(0, fmt::format("{} accounting, {}, {}; {} of real time, {} dispatches",
                               tcs::Text(run, "accounting"), tcs::Text(run, "sync"),
-                              Is(run, "levels") ? "real-time priorities" : "gates only",
+                              Is(run, "levels") ? "real-time priorities" : "unprivileged",
                               Seconds(Ns(run, "real_ns")), time.at("dispatches").dump()));
     std::string text = "virtual time " + Seconds(now_ns_);
     if (!time.at("end_ns").is_null()) text += " of " + Seconds(Ns(time, "end_ns"));

@@ -38,7 +38,7 @@ bool BlockDetection::LetsOthersRun() {
   if (all_.gate_keeper.says_call()) return false;  // it waits for us
   Task& task = *run_.turn.task();
   const char state = ThreadState(task.tid);
-  if (run_.gates_only && state == 'R') {
+  if (run_.is_unprivileged && state == 'R') {
     // The detector, too, has had a moment of the processor beside it. It is armed again soon.
     run_.turn.held_looks = 0;
     // Under set costs it is armed again when the thread is looked at, which is found silent by how

@@ -51,8 +51,8 @@ void ClockPages::Write(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   all_.host_cpu.SetRates(
       task, {.call = task.process->call_cost, .allocation = task.process->allocation_cost}, grant);
   // Without levels the shim looks at the beginning of each call whether it may begin.
-  grant.counts_work = run_.IsFixed() || run_.options.counts_work || run_.gates_only ? 1 : 0;
-  if (run_.gates_only && task.trap_id != 0 && task.trap_continues) {
+  grant.counts_work = run_.IsFixed() || run_.options.counts_work || run_.is_unprivileged ? 1 : 0;
+  if (run_.is_unprivileged && task.trap_id != 0 && task.trap_continues) {
     grant.counts_work |= shm::kBeginsInCall;
   }
   grant.NoteLimits();

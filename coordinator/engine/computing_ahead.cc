@@ -29,7 +29,7 @@ constexpr VirtualDuration kWorthAsking = VirtualDuration::Microseconds(20);
 }  // namespace
 
 std::vector<int> ComputingAhead::CpusBeside(int home, const RunState& run) {
-  const bool helps = !run.IsFixed() && !run.IsCallback() && !run.gates_only;
+  const bool helps = !run.IsFixed() && !run.IsCallback() && !run.is_unprivileged;
   return helps ? CpusBesideHome(home, run.options.host_cpus) : std::vector<int>{};
 }
 

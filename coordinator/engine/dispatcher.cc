@@ -88,7 +88,7 @@ void Dispatcher::Resume(Task& task) {
     all_.gate_keeper.OpenGate(task);
   }
   // What it was sent before, it handles first of all.
-  if (!run_.gates_only) task.has_signal = false;
+  if (!run_.is_unprivileged) task.has_signal = false;
   ++run_.report.switches;
   if (!starts_at_once) all_.host_cpu.Start(task, task.spins);
 }
@@ -162,13 +162,13 @@ void Dispatcher::AwaitStop(Task& task) {
     if (all_.event_pump.PollWhileRunning(task, asked)) return;
     if (!run_.turn.timed_out) continue;
     run_.turn.timed_out = false;
-    if (run_.gates_only) all_.host_cpu.detector().Arm();
+    if (run_.is_unprivileged) all_.host_cpu.detector().Arm();
     if (all_.debugger.Holds()) {
       Beat();
       continue;
     }
     const std::uint64_t now_tsc = all_.host_cpu.stop_tsc();
-    if (!run_.gates_only && starvation.IsDue(now_tsc) &&
+    if (!run_.is_unprivileged && starvation.IsDue(now_tsc) &&
         starvation.Starves(now_tsc, HostClockOf(task))) {
       all_.unmanaged.LowerThoseThatCompute(all_.home_processor.cpu(),
                                            all_.host_cpu.detector().pid());
@@ -318,7 +318,8 @@ void Dispatcher::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_unti
     all_.event_pump.Poll(EventPump::kNoWait, {task.reached});
     return;
   }
-  if (run_.gates_only && all_.gate_keeper.BringOthersToGates(task, {task.reached}).stops_running)
+  if (run_.is_unprivileged &&
+      all_.gate_keeper.BringOthersToGates(task, {task.reached}).stops_running)
     return;
   const bool looks_again = task.brief_done;
   const Moment call{task.cpu->progress};

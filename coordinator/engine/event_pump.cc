@@ -59,7 +59,7 @@ Reactor::Found EventPump::LookOnce(HostDuration timeout, Moment moment, bool is_
   if (n == 0 && run_.turn.lasts()) {
     if (held || (rearms && is_cut_short)) {
       all_.host_cpu.active().TakeBack();
-      if (held && run_.gates_only) {
+      if (held && run_.is_unprivileged) {
         // Others of the host may keep the processor from the detector for seconds. That the kernel
         // has the thread it has said once; whether it still has, /proc says, too.
         ++run_.turn.held_looks;

@@ -65,7 +65,7 @@ bool IsAwakeInWait(const Task& task) {
 }  // namespace
 
 bool GateKeeper::PutOff(const Task* by, Late late) {
-  if (!run_.gates_only || (run_.turn.lasts() && by == run_.turn.task())) return false;
+  if (!run_.is_unprivileged || (run_.turn.lasts() && by == run_.turn.task())) return false;
   if (!run_.turn.lasts() && put_off_.empty()) return false;  // nothing came before it
   put_off_.push_back(std::move(late));
   return true;
@@ -87,7 +87,7 @@ bool GateKeeper::MayGoOn(Task& task) {
 }
 
 void GateKeeper::OpenGate(Task& task) {
-  task.is_let_go = run_.gates_only;
+  task.is_let_go = run_.is_unprivileged;
   HostCpu::AllowWay(task);
   HostCpu::OpenGate(SlotOf(task));
 }
@@ -125,8 +125,8 @@ Reactor::Found GateKeeper::EndCall(Reactor::Found found) {
 // the signal, or the kernel has it) it computes on, and owes what it computes.
 void GateKeeper::BringToGate(Task& task) {
   // Where computing costs nothing, it may compute on, unless it pays for that (fixed_meter.h).
-  const bool is_charged =
-      run_.Preempts() || (run_.gates_only && task.metered.pays_for_silence && run_.turn.timed_out);
+  const bool is_charged = run_.Preempts() || (run_.is_unprivileged &&
+                                              task.metered.pays_for_silence && run_.turn.timed_out);
   const bool computes = is_charged && task.slot >= 0 && Waker::IsRunnable(task) && !task.parked &&
                         !run_.turn.HasSpoken() && !task.is_brief && task.can_be_stopped &&
                         !task.executes && !task.process->violates_protocol;
@@ -178,7 +178,7 @@ Reactor::Found GateKeeper::AwaitSleepAtGates(Moment moment) {
 // alone, and no time is jumped over. Who has told it sleeps, and has yet to be heard.
 void GateKeeper::AwaitHandlers() {
   while (const std::optional<Moment> look = all_.signal_wakes.TakeLook()) {
-    if (!run_.gates_only) return;
+    if (!run_.is_unprivileged) return;
     AwaitSleepAtGates(*look);
     all_.event_pump.Poll(EventPump::kNoWait, *look);
   }

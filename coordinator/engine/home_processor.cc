@@ -8,7 +8,7 @@
 namespace tcs {
 
 std::string HomeProcessor::Take(const RunState& run) {
-  if (run.gates_only) {
+  if (run.is_unprivileged) {
     share_.emplace();
     return {};
   }

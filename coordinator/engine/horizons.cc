@@ -13,7 +13,7 @@ VirtualTime Horizons::Of(Task& task, VirtualTime* idle_until) {
   const Robot& robot = *cpu.robot;
   *idle_until = {};
   const VirtualTime seen_by_spinners = all_.spins.LimitOf(task);
-  task.metered.is_watched = !seen_by_spinners.IsNever() && !run_.gates_only;
+  task.metered.is_watched = !seen_by_spinners.IsNever() && !run_.is_unprivileged;
   if (run_.IsCallback()) {
     return std::min({FurthestOf(cpu.progress),
                      robot.scheduler.HorizonWhileWorldStands(cpu.core, task.order),

@@ -20,7 +20,7 @@ constexpr int kExitTurns = 25;  // of kOutsidePoll
 
 void IdleTime::WaitOutside() {
   Beat();
-  const bool unseen = run_.gates_only || all_.waker.unseen() > 0 ||
+  const bool unseen = run_.is_unprivileged || all_.waker.unseen() > 0 ||
                       all_.waker.counts().for_child() > 0 || all_.waker.counts().for_signals() > 0;
   all_.event_pump.Poll(unseen ? kUnseenPoll : kOutsidePoll, {run_.latest});
 }

@@ -14,7 +14,7 @@ Reactor::Found NotificationReceiver::Arrived(Task& task, Moment moment) {
   if (all_.undispatched.WentToGate(task)) return {};
   all_.ahead.HasSpoken(task);
   if (run_.turn.IsOf(task)) {
-    if (run_.gates_only && all_.gate_keeper.MayGoOn(task)) return {.looks_again = true};
+    if (run_.is_unprivileged && all_.gate_keeper.MayGoOn(task)) return {.looks_again = true};
     run_.turn.notified = true;
   } else if (task.state == TaskState::kWaiting &&
              SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
@@ -84,7 +84,7 @@ Reactor::Found NotificationReceiver::Take(const Process& process, Moment moment)
     if (task == nullptr || task->state == TaskState::kDead) continue;
     if (all_.gate_keeper.IsSaidBeforeTurn(*task, messages[i])) continue;
     // One that says so again and again is heard once.
-    if (!task->is_put_off && run_.gates_only) task->is_put_off = PutOff(*task);
+    if (!task->is_put_off && run_.is_unprivileged) task->is_put_off = PutOff(*task);
     if (!task->is_put_off) found |= Arrived(*task, moment);
   }
   return found;

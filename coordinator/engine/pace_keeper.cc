@@ -44,7 +44,7 @@ bool PaceKeeper::Keep() {
     HostDuration wait = all_.pacing.ToWait(next);
     if (!all_.pacing.pacer().stands() || standing_since_ == HostTime())
       standing_since_ = RunClock::Now();
-    if (!run_.gates_only && RunClock::Now() - standing_since_ >= kPaused)
+    if (!run_.is_unprivileged && RunClock::Now() - standing_since_ >= kPaused)
       all_.home_processor.Lend();
     if (wait == HostDuration()) {
       if (all_.home_processor.TakeBack(run_.options.on_notice)) return true;
@@ -59,7 +59,7 @@ bool PaceKeeper::Keep() {
       // Where it stands now is to be seen at once.
       if (all_.pacing.pacer().stands() && !std::exchange(has_stood, true)) next_flush_ = {};
       if (wait >= kWorthFlushing) FlushForWatchers();
-      const bool looks = all_.waker.unseen() > 0 || run_.gates_only;
+      const bool looks = all_.waker.unseen() > 0 || run_.is_unprivileged;
       all_.event_pump.Poll(
           looks ? std::min(wait, kUnseenLook) : wait,
           {.at = std::max(run_.latest, all_.pacing.pacer().now()), .from_outside = true});

@@ -89,7 +89,7 @@ std::string Setup::Prepare() {
   all_.home_processor.UseHelpers(World::ProcessorsBeside(home, run_.options.host_cpus));
   if (!GivesRealTime(all_.real_time)) IgnoreLackOfRealTimeLimit();
   if (!BindTo(0, home)) return "cannot bind to CPU " + std::to_string(home);
-  if (run_.gates_only) {
+  if (run_.is_unprivileged) {
     LeaveRealTime(0);  // which whoever started tcsim may have given it
     BeWokenInTime();
     UseNoLevels();
@@ -194,7 +194,7 @@ std::string Setup::PrepareMemory() {
       run_.options.date_ns.value_or(run_.IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME));
   run_.header->coordinator_pid = getpid();
   run_.header->counter_ticks_per_ns_q32 = CounterRate();
-  run_.header->gates_only = run_.gates_only ? 1 : 0;
+  run_.header->is_unprivileged = run_.is_unprivileged ? 1 : 0;
   run_.header->preempts = run_.SendsToGates() || SpinWaits::AsksThreads(run_) ? 1 : 0;
   run_.header->has_brokers = run_.has_brokers ? 1 : 0;
   run_.header->notes_activity = all_.answers.is_open() ? 1 : 0;
@@ -245,7 +245,7 @@ std::string Setup::PrepareHostCpu() {
   std::unique_ptr<Meter> meter;
   if (run_.IsFixed()) {
     meter = std::make_unique<FixedMeter>(PatienceOf(run_.scenario).silent);
-  } else if (run_.gates_only) {
+  } else if (run_.is_unprivileged) {
     meter = std::make_unique<SharedCpuMeter>(all_.clock.rate());
   } else {
     meter = std::make_unique<MeasuredMeter>(all_.clock.rate());

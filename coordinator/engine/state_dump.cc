@@ -62,7 +62,7 @@ class Look {
             {"scenario", run_.scenario.path},
             {"accounting", run_.IsFixed() ? "fixed" : "measured"},
             {"sync", run_.IsCallback() ? "callback" : "consistent"},
-            {"levels", !run_.gates_only},
+            {"levels", !run_.is_unprivileged},
             {"host_cpu", host_cpu},
             {"real_ns", from_.clock.NsAt(now_tsc_)}};
   }

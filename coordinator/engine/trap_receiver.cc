@@ -63,7 +63,7 @@ Task* TrapReceiver::TaskOf(const TrappedCall& call) {
 
 Reactor::Found TrapReceiver::Arrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
-  if (!call.has_value()) return {.stops_running = !run_.gates_only, .wakes_others = true};
+  if (!call.has_value()) return {.stops_running = !run_.is_unprivileged, .wakes_others = true};
   if (LastDescriptor::AsksFor(*call)) {
     LastDescriptor::Answer(run_, run_.table.Living(call->tid), *call);
     return {};
@@ -133,7 +133,7 @@ Reactor::Found TrapReceiver::Take(const TrappedCall& call, Moment moment) {
   const bool ours = task != nullptr && (task->slot >= 0 || call.number == SYS_futex);
   if (!ours) {
     all_.trapped.HandleUnmanaged(call, moment);
-    return {.stops_running = !run_.gates_only, .wakes_others = true};
+    return {.stops_running = !run_.is_unprivileged, .wakes_others = true};
   }
   if (MakesCallAgain(*task, call)) {
     if (run_.turn.IsOf(*task)) all_.dispatcher.AnswerCall(*task);

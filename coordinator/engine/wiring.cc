@@ -10,8 +10,8 @@ namespace tcs {
 
 namespace {
 
-std::unique_ptr<Executor> MakeExecutor(bool gates_only) {
-  if (gates_only) return std::make_unique<GateExecutor>();
+std::unique_ptr<Executor> MakeExecutor(bool is_unprivileged) {
+  if (is_unprivileged) return std::make_unique<GateExecutor>();
   return std::make_unique<FifoExecutor>();
 }
 
@@ -25,7 +25,7 @@ Wiring::Wiring(const Scenario& scenario, const RunOptions& options, const HostPe
     : real_time(permits.real_time),
       run(scenario, options, real_time.error != 0, !permits.duplicates),
       activations(run.IsCallback()),
-      executor(MakeExecutor(run.gates_only)),
+      executor(MakeExecutor(run.is_unprivileged)),
       host_cpu(*executor, PatienceOf(scenario).ideal) {}
 
 Wiring::~Wiring() = default;

@@ -1,6 +1,6 @@
 // By the threads' own gates, for users who may not have real-time priorities. A thread that waits
 // at its gate runs when that is opened. One that was stopped elsewhere runs on until its next call,
-// which begins at its gate (RunHeader::gates_only); its clock stands still meanwhile. One that
+// which begins at its gate (RunHeader::is_unprivileged); its clock stands still meanwhile. One that
 // computes is sent there by a signal (port/thread_signals.h).
 #pragma once
 

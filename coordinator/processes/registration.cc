@@ -44,7 +44,7 @@ bool Registration::RegistersLater(const shm::AttachHello& hello) const {
   const pid_t running = run_.turn.task()->process->pid;
   const bool is_of_running =
       run_.turn.HasClock() && (hello.pid == running || ParentOf(hello.pid) == running);
-  return run_.gates_only || is_of_running;
+  return run_.is_unprivileged || is_of_running;
 }
 
 void Registration::RegisterUnannounced(Moment moment) {

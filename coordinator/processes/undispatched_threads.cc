@@ -20,7 +20,7 @@ void Tell(Task& task) {
 // Another program has no handler for the signal, and would die of it. Whichever thread executes
 // that becomes its process's first one.
 bool UndispatchedThreads::MayBeTold(const Task& task) const {
-  if (run_.gates_only || !run_.IsFixed()) return false;
+  if (run_.is_unprivileged || !run_.IsFixed()) return false;
   const Process& process = *task.process;
   const bool may_run = task.slot >= 0 && task.can_be_stopped && !task.is_ahead &&
                        !task.turns_beside && Waker::IsRunnable(task) &&
@@ -48,7 +48,8 @@ void UndispatchedThreads::SignalCame(Task& task, const SignalSets& sets) {
 }
 
 bool UndispatchedThreads::WentToGate(Task& task) {
-  if (run_.gates_only || SlotOf(task).note.kind != shm::NotificationKind::kPreempted) return false;
+  if (run_.is_unprivileged || SlotOf(task).note.kind != shm::NotificationKind::kPreempted)
+    return false;
   if (run_.turn.IsOf(task)) {
     // It was on its way there when it was dispatched.
     if (std::exchange(run_.turn.goes_on_from_gate, true)) return false;

@@ -4,11 +4,11 @@
 
 namespace tcs {
 
-RunState::RunState(const Scenario& its_scenario, const RunOptions& its_options, bool only_gates,
+RunState::RunState(const Scenario& its_scenario, const RunOptions& its_options, bool unprivileged,
                    bool with_brokers)
     : scenario(its_scenario),
       options(its_options),
-      gates_only(only_gates || with_brokers),
+      is_unprivileged(unprivileged || with_brokers),
       has_brokers(with_brokers),
       table([](pid_t pid) { return ThreadState(pid) != 'Z'; }),
       root(scenario.drift_bound, VirtualTime() + scenario.duration),

@@ -24,12 +24,12 @@ namespace tcs {
 
 struct RunState {
   // Where each process has a broker there are only gates.
-  RunState(const Scenario& its_scenario, const RunOptions& its_options, bool only_gates,
+  RunState(const Scenario& its_scenario, const RunOptions& its_options, bool unprivileged,
            bool with_brokers = false);
 
   const Scenario scenario;
   const RunOptions options;
-  const bool gates_only;   // there is no right to real-time priorities, or it is not used
+  const bool is_unprivileged;  // there is no right to real-time priorities, or it is not used
   const bool has_brokers;  // each process has one (os/descriptor_broker.h): pidfd_getfd is refused
   RunReport report;
 
@@ -63,9 +63,9 @@ struct RunState {
   bool IsFixed() const { return options.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options.sync == shm::Sync::kCallback; }
   // Without levels a thread that computes is told by a signal to stop.
-  bool Preempts() const { return gates_only && !IsFixed(); }
+  bool Preempts() const { return is_unprivileged && !IsFixed(); }
   // Threads are told by a signal to go to their gates; with levels, those that are not dispatched.
-  bool SendsToGates() const { return gates_only || IsFixed(); }
+  bool SendsToGates() const { return is_unprivileged || IsFixed(); }
   bool IsInGrace() const { return !grace_began.IsNever(); }
 
   // What the thread has computed outside of a turn it is charged at once, and passes in its turns.

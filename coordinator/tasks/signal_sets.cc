@@ -22,7 +22,7 @@ SignalSets SignalsOf(const RunState& run, Task& task) {
   constexpr std::uint64_t kOurs = SignalBit(shm::kPreemptionSignal);
   SignalSets sets = ReadSignalSets(task.tid);
   const bool is_at_gate = task.slot >= 0 && task.parked && task.trap_id == 0;
-  if (run.gates_only && is_at_gate) {
+  if (run.is_unprivileged && is_at_gate) {
     sets.blocked = SlotOf(task).blocked_signals;
     const std::uint64_t lost = LostOf(sets);
     sets.own_pending &= ~lost;

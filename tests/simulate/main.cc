@@ -39,7 +39,7 @@ long g_steps = 0;
 
 void Tell(const Course& course) {
   fprintf(stderr, "seed %lu, host %lu, %s, %s: tcs_simulate --seed %lu\n", course.seeds.script,
-          course.seeds.host, course.has_levels ? "levels" : "gates only",
+          course.seeds.host, course.has_levels ? "levels" : "unprivileged",
           course.is_fixed ? "fixed" : "measured", course.seeds.script);
 }
 
