@@ -220,7 +220,7 @@ void ComputingAhead::Await(Task& task, VirtualTime horizon) {
   const std::uint64_t begun_tsc = run.turn.recorded_tsc;
   std::uint64_t looks_tsc = begun_tsc + parts_.clock.TicksIn(kStateLookNs);
   for (;;) {
-    const Reactor::Found found = poll_({run.latest});
+    const PollOutcome found = poll_({run.latest});
     if (found.stops_running || found.wakes_others || !task.is_ahead) break;
     ChargeAhead(task);
     const VirtualDuration to_go = horizon - task.cpu->progress;

@@ -23,8 +23,8 @@ constexpr int kMostFalseAlarms = 6;
 
 }  // namespace
 
-Reactor::Found EventPump::Poll(HostDuration timeout, Moment moment) {
-  Reactor::Found found = LookOnce(timeout, moment, false);
+PollOutcome EventPump::Poll(HostDuration timeout, Moment moment) {
+  PollOutcome found = LookOnce(timeout, moment, false);
   for (int turn = 0; turn < kMostFullTurns; ++turn) {
     if (!std::exchange(found.looks_again, false) && !all_.reactor.IsFull()) break;
     found |= LookOnce(kNoWait, moment, true);
@@ -32,7 +32,7 @@ Reactor::Found EventPump::Poll(HostDuration timeout, Moment moment) {
   return all_.gate_keeper.EndCall(found);
 }
 
-Reactor::Found EventPump::LookOnce(HostDuration timeout, Moment moment, bool is_rest) {
+PollOutcome EventPump::LookOnce(HostDuration timeout, Moment moment, bool is_rest) {
   const bool held =
       run_.turn.held_looks > 0 && run_.turn.lasts() && !all_.host_cpu.detector().is_armed();
   const bool rearms =
@@ -72,7 +72,7 @@ Reactor::Found EventPump::LookOnce(HostDuration timeout, Moment moment, bool is_
     return {};
   }
   moment = run_.turn.lasts() ? Moment{run_.WrittenAt()} : all_.outside_leaf.WhenItCame(moment);
-  Reactor::Found found = all_.reactor.Handle(moment);
+  PollOutcome found = all_.reactor.Handle(moment);
   found |= WakeReadyAwaiters(moment);
   if (!run_.turn.lasts() || found.stops_running || !found.blocks_running) return found;
   ++run_.turn.held_looks;
@@ -94,7 +94,7 @@ bool EventPump::PollWhileRunning(Task& task, HostDuration timeout) {
 }
 
 // Those whose descriptors have become ready, all at once: one event may be for one of them only.
-Reactor::Found EventPump::WakeReadyAwaiters(Moment moment) {
+PollOutcome EventPump::WakeReadyAwaiters(Moment moment) {
   std::vector<Task*> awaiters = std::exchange(ready_awaiters_, {});
   // Something else may have ended the wait meanwhile.
   std::erase_if(awaiters,

@@ -20,19 +20,19 @@ class EventPump : public EnginePart {
   // All that there is at this instant: were the rest found later, it would have happened later. A
   // negative timeout: none. What is found happens at `moment`, or at the time that the running
   // thread has come to.
-  Reactor::Found Poll(HostDuration timeout, Moment moment);
+  PollOutcome Poll(HostDuration timeout, Moment moment);
   // The same for the running thread, in turns while somebody waits for signals. True if it has to
   // stop.
   bool PollWhileRunning(Task& task, HostDuration timeout);
   // One look. `is_rest`: a further look at an instant, at which the running thread stands as it was
   // found.
-  Reactor::Found LookOnce(HostDuration timeout, Moment moment, bool is_rest);
+  PollOutcome LookOnce(HostDuration timeout, Moment moment, bool is_rest);
 
   // A descriptor that the thread waits for has become ready: all such threads are woken together.
   void NoteReady(Task& task) { ready_awaiters_.push_back(&task); }
 
  private:
-  Reactor::Found WakeReadyAwaiters(Moment moment);
+  PollOutcome WakeReadyAwaiters(Moment moment);
 
   std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now
 };

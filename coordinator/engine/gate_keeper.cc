@@ -71,8 +71,8 @@ bool GateKeeper::PutOff(const Task* by, Late late) {
   return true;
 }
 
-Reactor::Found GateKeeper::TakePutOff(Moment moment) {
-  Reactor::Found found;
+PollOutcome GateKeeper::TakePutOff(Moment moment) {
+  PollOutcome found;
   for (const Late& late : std::exchange(put_off_, {})) found |= late(moment);
   return found;
 }
@@ -101,7 +101,7 @@ bool GateKeeper::IsSaidBeforeTurn(Task& task, const shm::PipeMessage& message) {
   return task.is_let_go;
 }
 
-Reactor::Found GateKeeper::EndCall(Reactor::Found found) {
+PollOutcome GateKeeper::EndCall(PollOutcome found) {
   if (!run_.turn.lasts() || !says_call_) return found;
   const Moment moment{run_.WrittenAt()};
   found |= TakePutOff(moment);
@@ -147,16 +147,15 @@ void GateKeeper::BringToGate(Task& task) {
 // made again. So nobody may be about to make one when a thread goes on that sends a signal: those
 // that compute are told to go to their gates, which restarts what they have just called, and are
 // waited for as in BringToGate.
-Reactor::Found GateKeeper::BringOthersToGates(const Task& sender, Moment moment) {
+PollOutcome GateKeeper::BringOthersToGates(const Task& sender, Moment moment) {
   if (!SendsSignal(sender)) return {};
   const auto computes = [&sender](const Task& task) {
     return &task != &sender && MayCompute(task) && ThreadState(task.tid) == 'R';
   };
-  Reactor::Found found =
-      AwaitThreads(moment, {kGateLook, kMostWayToGate}, computes, [](Task& task) {
-        task.has_signal = true;
-        HostCpu::SendToGate(task.process->pid, task);
-      });
+  PollOutcome found = AwaitThreads(moment, {kGateLook, kMostWayToGate}, computes, [](Task& task) {
+    task.has_signal = true;
+    HostCpu::SendToGate(task.process->pid, task);
+  });
   found |= AwaitSleepAtGates(moment);
   for (int turn = 0; turn < kMostAtOnce && all_.reactor.HasMore(); ++turn) {
     found |= all_.event_pump.LookOnce(EventPump::kNoWait, moment, true);
@@ -168,7 +167,7 @@ Reactor::Found GateKeeper::BringOthersToGates(const Task& sender, Moment moment)
 // asleep, may run the handler at once, as may one in a trapped call on kernels that end such calls
 // for signals: then no signal is there for it any more, and only the thread itself can tell that
 // its wait is over. The world must not go on past that.
-Reactor::Found GateKeeper::AwaitSleepAtGates(Moment moment) {
+PollOutcome GateKeeper::AwaitSleepAtGates(Moment moment) {
   return AwaitThreads(moment, {kShortGateLook, kMostWayFromWait}, IsAwakeInWait, [](Task&) {});
 }
 
@@ -185,10 +184,10 @@ void GateKeeper::AwaitHandlers() {
 }
 
 // All of that happens at the moment. `at_first` is done with each once.
-Reactor::Found GateKeeper::AwaitThreads(Moment moment, const WayToGate& way,
-                                        const std::function<bool(const Task&)>& is_awaited,
-                                        const std::function<void(Task&)>& at_first) {
-  Reactor::Found found;
+PollOutcome GateKeeper::AwaitThreads(Moment moment, const WayToGate& way,
+                                     const std::function<bool(const Task&)>& is_awaited,
+                                     const std::function<void(Task&)>& at_first) {
+  PollOutcome found;
   std::map<const Task*, HostDuration> first_seen;
   bool awaits = true;
   const HostTime until = RunClock::Now() + kMostStarved;

@@ -21,7 +21,7 @@ namespace tcs {
 class GateKeeper : public EnginePart {
  public:
   using EnginePart::EnginePart;
-  using Late = std::function<Reactor::Found(Moment)>;
+  using Late = std::function<PollOutcome(Moment)>;
 
   void TurnBegins() { says_call_ = opens_gate_ = false; }
   // The running thread has said that a call begins, and waits for the answer.
@@ -30,21 +30,21 @@ class GateKeeper : public EnginePart {
   bool MayGoOn(Task& task);
   // All events of this instant have been handled. If nobody has to run instead, the running thread
   // goes on with its call.
-  Reactor::Found EndCall(Reactor::Found found);
+  PollOutcome EndCall(PollOutcome found);
   // True once, if it is to go on.
   bool TakesOpening() { return std::exchange(opens_gate_, false); }
   void OpenGate(Task& task);
 
   // True if what `by` does happens later.
   bool PutOff(const Task* by, Late late);
-  Reactor::Found TakePutOff(Moment moment);
+  PollOutcome TakePutOff(Moment moment);
   // What the message says was said before the thread's turn, which is its answer.
   bool IsSaidBeforeTurn(Task& task, const shm::PipeMessage& message);
 
   // The running thread is to stop, and has not said anything.
   void BringToGate(Task& task);
   // Before `sender`, which sends a signal, goes on: nobody else may be about to make a call.
-  Reactor::Found BringOthersToGates(const Task& sender, Moment moment);
+  PollOutcome BringOthersToGates(const Task& sender, Moment moment);
   // Threads that were looked at for a signal may be running its handler already.
   void AwaitHandlers();
   // What the thread has computed since its last turn ended is a debt.
@@ -55,10 +55,10 @@ class GateKeeper : public EnginePart {
     HostDuration look_every;
     HostDuration most;  // that it takes a thread, by its CPU clock
   };
-  Reactor::Found AwaitSleepAtGates(Moment moment);
-  Reactor::Found AwaitThreads(Moment moment, const WayToGate& way,
-                              const std::function<bool(const Task&)>& is_awaited,
-                              const std::function<void(Task&)>& at_first);
+  PollOutcome AwaitSleepAtGates(Moment moment);
+  PollOutcome AwaitThreads(Moment moment, const WayToGate& way,
+                           const std::function<bool(const Task&)>& is_awaited,
+                           const std::function<void(Task&)>& at_first);
 
   bool says_call_ = false, opens_gate_ = false;
   std::vector<Late> put_off_;

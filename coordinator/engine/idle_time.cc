@@ -33,7 +33,7 @@ void IdleTime::WaitForDebugger() {
 
 // Before idle time is jumped over: is something from outside already there?
 bool IdleTime::HasJumpedOver() {
-  const Reactor::Found found = all_.event_pump.Poll(EventPump::kNoWait, {run_.latest});
+  const PollOutcome found = all_.event_pump.Poll(EventPump::kNoWait, {run_.latest});
   all_.unseen_threads.Poll();
   if (all_.unseen_threads.UnmanagedRun()) {
     all_.event_pump.Poll(kUnseenPoll, {run_.latest});
@@ -69,7 +69,7 @@ int IdleTime::Living() const {
 // back: they get as much real time as there is virtual time left. False at the run's end.
 bool IdleTime::AwaitOutside() {
   if (!run_.end.IsNever()) {
-    const Reactor::Found found = all_.event_pump.Poll(EventPump::kNoWait, {run_.latest});
+    const PollOutcome found = all_.event_pump.Poll(EventPump::kNoWait, {run_.latest});
     all_.unseen_threads.Poll();
     if (found.wakes_others || !run_.root.Least().IsNever()) return true;
     if (all_.waker.unseen() == 0 && !all_.spinners.any() && !all_.unknown_children.AnyCounts() &&

@@ -12,7 +12,7 @@ namespace tcs {
 
 void KernelEvents::Register() {
   const auto on = [this](Tag tag,
-                         Reactor::Found (KernelEvents::*handler)(Subject, std::uint32_t, Moment)) {
+                         PollOutcome (KernelEvents::*handler)(Subject, std::uint32_t, Moment)) {
     all_.reactor.On(tag,
                     [this, handler](const Subject& subject, std::uint32_t events, Moment moment) {
                       return (this->*handler)(subject, events, moment);
@@ -35,22 +35,22 @@ void KernelEvents::Register() {
   on(Tag::kOutside, &KernelEvents::OnOutside);
 }
 
-Reactor::Found KernelEvents::OnPipe(Subject process, std::uint32_t, Moment moment) {
+PollOutcome KernelEvents::OnPipe(Subject process, std::uint32_t, Moment moment) {
   return all_.notification_receiver.Take(run_.table.ProcessAt(process.index), moment);
 }
 
-Reactor::Found KernelEvents::OnListener(Subject listener, std::uint32_t, Moment) {
+PollOutcome KernelEvents::OnListener(Subject listener, std::uint32_t, Moment) {
   if (all_.sockets.Accept(listener.index)) return {};
   all_.registration.EndForWantOfFiles();
   return kConcernsAll;
 }
 
-Reactor::Found KernelEvents::OnConnection(Subject subject, std::uint32_t, Moment moment) {
+PollOutcome KernelEvents::OnConnection(Subject subject, std::uint32_t, Moment moment) {
   const bool registers = all_.registration.Heard(static_cast<int>(subject.index), moment);
-  return registers ? kConcernsAll : Reactor::Found{};
+  return registers ? kConcernsAll : PollOutcome{};
 }
 
-Reactor::Found KernelEvents::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
+PollOutcome KernelEvents::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
   Process& ended = run_.table.ProcessAt(process.index);
   if (TurnsBeside::NoteExitIn(ended)) {
     all_.reactor.Remove(ended.pidfd.get());
@@ -67,7 +67,7 @@ Reactor::Found KernelEvents::OnProcessEnd(Subject process, std::uint32_t, Moment
   return {};
 }
 
-Reactor::Found KernelEvents::OnAwaited(Subject subject, std::uint32_t, Moment) {
+PollOutcome KernelEvents::OnAwaited(Subject subject, std::uint32_t, Moment) {
   Task& task = run_.table.At(static_cast<int>(subject.index));
   auto* wait = task.Awaits<awaited::Descriptors>();
   if (wait == nullptr || subject != DescriptorWaits::SubjectOf(task, *wait)) return {};
@@ -77,14 +77,14 @@ Reactor::Found KernelEvents::OnAwaited(Subject subject, std::uint32_t, Moment) {
   return {.wakes_others = true};
 }
 
-Reactor::Found KernelEvents::OnOutside(Subject file, std::uint32_t, Moment moment) {
+PollOutcome KernelEvents::OnOutside(Subject file, std::uint32_t, Moment moment) {
   all_.outside.HasCome(file, all_.pacing.RunningTime(),
                        all_.outside_leaf.awaits() ? moment.at : VirtualTime());
   all_.outside_leaf.Update();
   return {};
 }
 
-Reactor::Found KernelEvents::OnUnknownChildEnd(Subject child, std::uint32_t, Moment moment) {
+PollOutcome KernelEvents::OnUnknownChildEnd(Subject child, std::uint32_t, Moment moment) {
   const auto pid = static_cast<pid_t>(child.index);
   if (Process* parent = all_.unknown_children.Ended(pid); parent != nullptr) {
     all_.stops.ChildChanged(*parent, pid, false, moment);
@@ -92,7 +92,7 @@ Reactor::Found KernelEvents::OnUnknownChildEnd(Subject child, std::uint32_t, Mom
   return kConcernsAll;
 }
 
-Reactor::Found KernelEvents::OnTrap(Subject subject, std::uint32_t events, Moment moment) {
+PollOutcome KernelEvents::OnTrap(Subject subject, std::uint32_t events, Moment moment) {
   const auto listener = static_cast<int>(subject.index);
   if ((events & EPOLLIN) == 0) {
     all_.traps.Close(listener);
@@ -101,7 +101,7 @@ Reactor::Found KernelEvents::OnTrap(Subject subject, std::uint32_t events, Momen
   return all_.trap_receiver.Arrived(listener, moment);
 }
 
-Reactor::Found KernelEvents::OnCommand(Subject channel, std::uint32_t, Moment moment) {
+PollOutcome KernelEvents::OnCommand(Subject channel, std::uint32_t, Moment moment) {
   CommandSender from;
   if (run_.turn.HasClock()) {
     Task& task = *run_.turn.task();
@@ -118,35 +118,35 @@ Reactor::Found KernelEvents::OnCommand(Subject channel, std::uint32_t, Moment mo
 }
 
 // The thread that has sent goes on, as far as those allow who receive it.
-Reactor::Found KernelEvents::OnNetwork(Subject robot, std::uint32_t, Moment moment) {
+PollOutcome KernelEvents::OnNetwork(Subject robot, std::uint32_t, Moment moment) {
   all_.network.Take(robot.index, moment.at);
   all_.network_leaf.Update();
   if (run_.turn.lasts() && run_.turn.HasClock()) all_.dispatcher.GoOnBesideWoken();
   return {};
 }
 
-Reactor::Found KernelEvents::OnSignal(Subject, std::uint32_t, Moment) {
+PollOutcome KernelEvents::OnSignal(Subject, std::uint32_t, Moment) {
   return {.stops_running = all_.end_requests.Take(run_)};
 }
 
-Reactor::Found KernelEvents::OnGraceRanOut(Subject, std::uint32_t, Moment) {
+PollOutcome KernelEvents::OnGraceRanOut(Subject, std::uint32_t, Moment) {
   all_.grace.RanOut();
   return {.stops_running = true};
 }
 
-Reactor::Found KernelEvents::OnDetector(Subject, std::uint32_t, Moment) {
+PollOutcome KernelEvents::OnDetector(Subject, std::uint32_t, Moment) {
   if (!all_.host_cpu.detector().TakeFired()) return {};
   all_.host_cpu.active().TakeBack();
   return {.blocks_running = true};
 }
 
-Reactor::Found KernelEvents::OnDetectorEnd(Subject, std::uint32_t, Moment) {
+PollOutcome KernelEvents::OnDetectorEnd(Subject, std::uint32_t, Moment) {
   all_.block_detection.DetectorEnded();
   return {.stops_running = true};
 }
 
 // Nothing comes of it for the run.
-Reactor::Found KernelEvents::OnStateAsked(Subject, std::uint32_t, Moment) {
+PollOutcome KernelEvents::OnStateAsked(Subject, std::uint32_t, Moment) {
   if (all_.state_link.TakeAsked())
     all_.state_link.Answer(all_.state_dump.Text(all_.home_processor.cpu(), HostTsc()));
   return {};

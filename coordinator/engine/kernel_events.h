@@ -16,21 +16,21 @@ class KernelEvents : public EnginePart {
   void Register();
 
  private:
-  Reactor::Found OnPipe(Subject process, std::uint32_t events, Moment moment);
-  Reactor::Found OnListener(Subject listener, std::uint32_t events, Moment moment);
-  Reactor::Found OnConnection(Subject subject, std::uint32_t events, Moment moment);
-  Reactor::Found OnProcessEnd(Subject process, std::uint32_t events, Moment moment);
-  Reactor::Found OnAwaited(Subject subject, std::uint32_t events, Moment moment);
-  Reactor::Found OnOutside(Subject file, std::uint32_t events, Moment moment);
-  Reactor::Found OnUnknownChildEnd(Subject child, std::uint32_t events, Moment moment);
-  Reactor::Found OnTrap(Subject subject, std::uint32_t events, Moment moment);
-  Reactor::Found OnCommand(Subject channel, std::uint32_t events, Moment moment);
-  Reactor::Found OnNetwork(Subject robot, std::uint32_t events, Moment moment);
-  Reactor::Found OnSignal(Subject subject, std::uint32_t events, Moment moment);
-  Reactor::Found OnGraceRanOut(Subject subject, std::uint32_t events, Moment moment);
-  Reactor::Found OnDetector(Subject subject, std::uint32_t events, Moment moment);
-  Reactor::Found OnDetectorEnd(Subject subject, std::uint32_t events, Moment moment);
-  Reactor::Found OnStateAsked(Subject subject, std::uint32_t events, Moment moment);
+  PollOutcome OnPipe(Subject process, std::uint32_t events, Moment moment);
+  PollOutcome OnListener(Subject listener, std::uint32_t events, Moment moment);
+  PollOutcome OnConnection(Subject subject, std::uint32_t events, Moment moment);
+  PollOutcome OnProcessEnd(Subject process, std::uint32_t events, Moment moment);
+  PollOutcome OnAwaited(Subject subject, std::uint32_t events, Moment moment);
+  PollOutcome OnOutside(Subject file, std::uint32_t events, Moment moment);
+  PollOutcome OnUnknownChildEnd(Subject child, std::uint32_t events, Moment moment);
+  PollOutcome OnTrap(Subject subject, std::uint32_t events, Moment moment);
+  PollOutcome OnCommand(Subject channel, std::uint32_t events, Moment moment);
+  PollOutcome OnNetwork(Subject robot, std::uint32_t events, Moment moment);
+  PollOutcome OnSignal(Subject subject, std::uint32_t events, Moment moment);
+  PollOutcome OnGraceRanOut(Subject subject, std::uint32_t events, Moment moment);
+  PollOutcome OnDetector(Subject subject, std::uint32_t events, Moment moment);
+  PollOutcome OnDetectorEnd(Subject subject, std::uint32_t events, Moment moment);
+  PollOutcome OnStateAsked(Subject subject, std::uint32_t events, Moment moment);
 };
 
 }  // namespace tcs

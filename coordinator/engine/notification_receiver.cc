@@ -8,7 +8,7 @@
 
 namespace tcs {
 
-Reactor::Found NotificationReceiver::Arrived(Task& task, Moment moment) {
+PollOutcome NotificationReceiver::Arrived(Task& task, Moment moment) {
   task.executes = false;
   if (SlotOf(task).note.kind == shm::NotificationKind::kPreempted) task.has_signal = false;
   if (all_.undispatched.WentToGate(task)) return {};
@@ -23,7 +23,7 @@ Reactor::Found NotificationReceiver::Arrived(Task& task, Moment moment) {
     all_.unseen_threads.ComeBack(task, moment);
     task.parked = true;
     all_.host_cpu.Check(task, CpuClockOf(task));
-    Reactor::Found found = kConcernsAll;
+    PollOutcome found = kConcernsAll;
     found.looks_again = Handle(task);
     return found;
   } else if (!task.parked || task.trap_id != 0) {
@@ -66,19 +66,19 @@ bool NotificationReceiver::Handle(Task& task) {
 bool NotificationReceiver::PutOff(Task& task) {
   return all_.gate_keeper.PutOff(&task, [this, &task, tid = task.tid](Moment at) {
     // It may have ended meanwhile.
-    if (run_.table.Living(tid) != &task) return Reactor::Found{};
+    if (run_.table.Living(tid) != &task) return PollOutcome{};
     task.is_put_off = false;
     return Arrived(task, at);
   });
 }
 
-Reactor::Found NotificationReceiver::Take(const Process& process, Moment moment) {
+PollOutcome NotificationReceiver::Take(const Process& process, Moment moment) {
   constexpr std::size_t kAtOnce = 64;
   if (process.link == nullptr) return {};
   shm::PipeMessage messages[kAtOnce];
   const ssize_t bytes = read(process.link->incoming_fd(), messages, sizeof messages);
   const std::size_t count = bytes > 0 ? static_cast<std::size_t>(bytes) / sizeof messages[0] : 0;
-  Reactor::Found found;
+  PollOutcome found;
   for (std::size_t i = 0; i < count; ++i) {
     Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
     if (task == nullptr || task->state == TaskState::kDead) continue;

@@ -13,7 +13,7 @@ class NotificationReceiver : public EnginePart {
   using EnginePart::EnginePart;
 
   // Of one process, so many at a time: others have their turns, too.
-  Reactor::Found Take(const Process& process, Moment moment);
+  PollOutcome Take(const Process& process, Moment moment);
   // What the thread has said last is answered, at its own time. True if there may be more by now
   // that belongs to this moment. If a handler has come meanwhile, what the handler interrupted is
   // answered first: nobody may have heard of it yet.
@@ -24,7 +24,7 @@ class NotificationReceiver : public EnginePart {
 
  private:
   void HandlerCame(Task& task, Moment moment);
-  Reactor::Found Arrived(Task& task, Moment moment);
+  PollOutcome Arrived(Task& task, Moment moment);
   bool PutOff(Task& task);
 };
 

@@ -61,7 +61,7 @@ Task* TrapReceiver::TaskOf(const TrappedCall& call) {
   return task == nullptr && IsSleep(call) ? all_.spawns.ActsFor(call.tid) : task;
 }
 
-Reactor::Found TrapReceiver::Arrived(int listener, Moment moment) {
+PollOutcome TrapReceiver::Arrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
   if (!call.has_value()) return {.stops_running = !run_.is_unprivileged, .wakes_others = true};
   if (LastDescriptor::AsksFor(*call)) {
@@ -125,7 +125,7 @@ void TrapReceiver::TakeCallsOfNewborns(Moment moment) {
   }
 }
 
-Reactor::Found TrapReceiver::Take(const TrappedCall& call, Moment moment) {
+PollOutcome TrapReceiver::Take(const TrappedCall& call, Moment moment) {
   Task* task = TaskOf(call);
   if (task != nullptr) task->is_call_put_off = false;
   // Before it registers a thread is known if it was announced, and others may wait with it for a

@@ -16,7 +16,7 @@ class TrapReceiver : public EnginePart {
   using EnginePart::EnginePart;
 
   // A trapped call has arrived. That of the running thread stops it like a notification.
-  Reactor::Found Arrived(int listener, Moment moment);
+  PollOutcome Arrived(int listener, Moment moment);
   // The makers of threads have gone on, so that it is known whose the calls are.
   void TakeCallsOfNewborns(Moment moment);
   // A signal was to end the thread's wait, but the kernel has none for the thread: its call is
@@ -24,7 +24,7 @@ class TrapReceiver : public EnginePart {
   void TakeAgainIfUnmarked(Task& task);
 
  private:
-  Reactor::Found Take(const TrappedCall& call, Moment moment);
+  PollOutcome Take(const TrappedCall& call, Moment moment);
   Task* TaskOf(const TrappedCall& call);
 
   std::vector<TrappedCall> unborn_calls_;  // of threads that are to be known soon

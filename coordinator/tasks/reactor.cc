@@ -24,7 +24,7 @@ constexpr Subject Unpacked(std::uint64_t data) {
 
 }  // namespace
 
-Reactor::Found& Reactor::Found::operator|=(const Found& other) {
+PollOutcome& PollOutcome::operator|=(const PollOutcome& other) {
   stops_running |= other.stops_running;
   wakes_others |= other.wakes_others;
   blocks_running |= other.blocks_running;
@@ -71,8 +71,8 @@ bool Reactor::HasMore() const {
   return poll(&any, 1, 0) > 0;
 }
 
-Reactor::Found Reactor::Handle(Moment moment) {
-  Found found;
+PollOutcome Reactor::Handle(Moment moment) {
+  PollOutcome found;
   TCS_CHECK(!is_handling_);
   is_handling_ = true;
   for (std::size_t i = 0; i < count_; ++i) {

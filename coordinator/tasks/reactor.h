@@ -46,18 +46,19 @@ struct Subject {
   bool operator==(const Subject&) const = default;
 };
 
+// What handlers have found, together.
+struct PollOutcome {
+  bool stops_running = false;   // the running thread has to be stopped
+  bool wakes_others = false;    // somebody may act now who could not before
+  bool blocks_running = false;  // the kernel holds the running thread
+  bool looks_again = false;     // there may be more by now that belongs to this moment
+  PollOutcome& operator|=(const PollOutcome& other);
+};
+
 class Reactor {
  public:
-  // What handlers have found, together.
-  struct Found {
-    bool stops_running = false;   // the running thread has to be stopped
-    bool wakes_others = false;    // somebody may act now who could not before
-    bool blocks_running = false;  // the kernel holds the running thread
-    bool looks_again = false;     // there may be more by now that belongs to this moment
-    Found& operator|=(const Found& other);
-  };
   // `events` as epoll has them.
-  using Handler = std::function<Found(const Subject&, std::uint32_t events, Moment)>;
+  using Handler = std::function<PollOutcome(const Subject&, std::uint32_t events, Moment)>;
 
   Reactor();
   Reactor(const Reactor&) = delete;
@@ -82,7 +83,7 @@ class Reactor {
   // True if something has come since that the next wait takes.
   bool HasMore() const;
   // Has what is queued handled, all of it at that moment.
-  Found Handle(Moment moment);
+  PollOutcome Handle(Moment moment);
 
  private:
   static constexpr std::size_t kAtOnce = 64;
@@ -101,6 +102,6 @@ class Reactor {
 };
 
 // Of what may concern anybody.
-inline constexpr Reactor::Found kConcernsAll{.stops_running = true, .wakes_others = true};
+inline constexpr PollOutcome kConcernsAll{.stops_running = true, .wakes_others = true};
 
 }  // namespace tcs

@@ -138,7 +138,7 @@ TEST_F(EngineParts, NoGateOpensBeforeACallHasBegun) {
 
 TEST_F(EngineParts, NothingIsPutOffWhereNothingCameBefore) {
   Task& task = AddThread(run_.robots[0]);
-  EXPECT_FALSE(all_.gate_keeper.PutOff(&task, [](Moment) { return Reactor::Found{}; }));
+  EXPECT_FALSE(all_.gate_keeper.PutOff(&task, [](Moment) { return PollOutcome{}; }));
 }
 
 TEST_F(EngineParts, AStopSignalIsKeptUntilItIsTaken) {
@@ -166,7 +166,7 @@ TEST_F(EngineParts, NobodyIsWaitedForWhereNothingIsToCome) {
 }
 
 TEST_F(EngineParts, ALookFindsNothingWhereTheKernelHasNothingToSay) {
-  const Reactor::Found found = all_.event_pump.Poll(EventPump::kNoWait, {At(kMs)});
+  const PollOutcome found = all_.event_pump.Poll(EventPump::kNoWait, {At(kMs)});
   EXPECT_FALSE(found.stops_running || found.wakes_others || found.blocks_running);
 }
 
@@ -174,7 +174,7 @@ TEST_F(EngineParts, WithLevelsNothingIsPutOff) {
   Task& task = AddThread(run_.robots[0]);
   Task& other = AddThread(run_.robots[1]);
   run_.turn.Begin(task, At(kMs));
-  EXPECT_FALSE(all_.gate_keeper.PutOff(&other, [](Moment) { return Reactor::Found{}; }));
+  EXPECT_FALSE(all_.gate_keeper.PutOff(&other, [](Moment) { return PollOutcome{}; }));
 }
 
 // It goes on with the call that it begins.
@@ -216,10 +216,10 @@ TEST_F(EnginePartsAtGates, WhatOthersDoIsPutOffToTheEndOfTheCall) {
   for (const int which : {1, 2}) {
     EXPECT_TRUE(all_.gate_keeper.PutOff(&other, [&done, which](Moment) {
       done.push_back(which);
-      return Reactor::Found{};
+      return PollOutcome{};
     }));
   }
-  EXPECT_FALSE(all_.gate_keeper.PutOff(task_, [](Moment) { return Reactor::Found{}; }));
+  EXPECT_FALSE(all_.gate_keeper.PutOff(task_, [](Moment) { return PollOutcome{}; }));
   EXPECT_TRUE(done.empty());
   Says(shm::NotificationKind::kCall);
   EXPECT_TRUE(all_.gate_keeper.MayGoOn(*task_));
@@ -245,7 +245,7 @@ TEST_F(EnginePartsAtGates, ANotificationInThePipeEndsTheTurnOfItsThread) {
   const shm::PipeMessage message{static_cast<std::uint32_t>(task_->slot), 0};
   ASSERT_EQ(write(task_->process->link->notify_fd(), &message, sizeof message),
             static_cast<ssize_t>(sizeof message));
-  const Reactor::Found found = all_.event_pump.LookOnce(EventPump::kNoWait, {At(kMs)}, true);
+  const PollOutcome found = all_.event_pump.LookOnce(EventPump::kNoWait, {At(kMs)}, true);
   EXPECT_TRUE(found.stops_running);
   EXPECT_TRUE(run_.turn.notified);
 }

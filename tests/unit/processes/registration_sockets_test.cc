@@ -17,13 +17,13 @@ class RegistrationSocketsTest : public testing::Test {
   void SetUp() override {
     reactor_.On(Tag::kListener, [this](const Subject& subject, std::uint32_t, Moment) {
       EXPECT_EQ(sockets_.Accept(subject.index), has_room_);
-      return Reactor::Found{};
+      return PollOutcome{};
     });
     reactor_.On(Tag::kConnection, [this](const Subject& subject, std::uint32_t, Moment) {
       auto connection = sockets_.Take(static_cast<int>(subject.index));
       EXPECT_TRUE(connection.has_value());
       if (connection.has_value()) heard_.push_back(connection->client);
-      return Reactor::Found{};
+      return PollOutcome{};
     });
   }
   static UniqueFd ConnectTo(const std::string& name) {

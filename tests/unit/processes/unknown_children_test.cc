@@ -21,7 +21,7 @@ class UnknownChildrenTest : public testing::Test {
     reactor_.On(Tag::kUnknownChild, [this](const Subject& child, std::uint32_t, Moment) {
       ended_.push_back(static_cast<pid_t>(child.index));
       parents_.push_back(children_.Ended(ended_.back()));
-      return Reactor::Found{};
+      return PollOutcome{};
     });
     parent_ = &run_.table.AddProcess(getpid());
   }

@@ -37,7 +37,7 @@ struct Seen {
   VirtualTime at;
 };
 
-Reactor::Handler Noting(std::vector<Seen>* seen, Reactor::Found found = {}) {
+Reactor::Handler Noting(std::vector<Seen>* seen, PollOutcome found = {}) {
   return [seen, found](const Subject& subject, std::uint32_t events, Moment moment) {
     seen->push_back({subject, events, moment.at});
     return found;
@@ -87,7 +87,7 @@ TEST(Reactor, WhatHandlersFindAddsUp) {
   reactor.Add(one.fd(), EPOLLIN, {Tag::kPipe});
   reactor.Add(other.fd(), EPOLLIN, {Tag::kDetector});
   reactor.Wait(HostNs(0));
-  const Reactor::Found found = reactor.Handle({});
+  const PollOutcome found = reactor.Handle({});
   EXPECT_TRUE(found.stops_running);
   EXPECT_TRUE(found.blocks_running);
   EXPECT_TRUE(found.looks_again);
@@ -164,7 +164,7 @@ TEST(Reactor, AHandlerMayLetItsDescriptorGo) {
   reactor.On(Tag::kTrap, [&](const Subject&, std::uint32_t, Moment) {
     ++handled;
     reactor.Remove(source.fd());
-    return Reactor::Found{};
+    return PollOutcome{};
   });
   reactor.Add(source.fd(), EPOLLIN, {Tag::kTrap});
   source.Fire();
@@ -179,7 +179,7 @@ TEST(ReactorDeathTest, WaitingInAHandlerIsABug) {
   const Source source;
   reactor.On(Tag::kPipe, [&](const Subject&, std::uint32_t, Moment) {
     reactor.Wait(HostNs(0));
-    return Reactor::Found{};
+    return PollOutcome{};
   });
   reactor.Add(source.fd(), EPOLLIN, {Tag::kPipe});
   reactor.Wait(HostNs(0));
