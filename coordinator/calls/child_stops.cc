@@ -36,7 +36,7 @@ void ChildStops::LetStop(const Process& process) {
   }
 }
 
-void ChildStops::Look(Process& process, Moment moment) {
+void ChildStops::Look(Process& process, EventTime when) {
   if (process.dead) return;
   LetStop(process);
   const bool stopped = ThreadState(process.pid) == 'T';
@@ -45,7 +45,7 @@ void ChildStops::Look(Process& process, Moment moment) {
   process.continue_is_news = !stopped;
   if (!stopped) LetGoOn(process);
   Process* parent = run_.table.LivingProcess(process.parent);
-  if (parent != nullptr) ChildChanged(*parent, process.pid, true, moment);
+  if (parent != nullptr) ChildChanged(*parent, process.pid, true, when);
 }
 
 // The kernel sends the parent its signal when one of the threads runs next: those that wait may do
@@ -61,17 +61,17 @@ void ChildStops::LetGoOn(const Process& process) {
   }
 }
 
-void ChildStops::ChildChanged(Process& parent, pid_t child, bool by_stop, Moment moment) {
+void ChildStops::ChildChanged(Process& parent, pid_t child, bool by_stop, EventTime when) {
   ++parent.children_changed;
   for (Task& task : run_.table.tasks()) {
     const auto* wait = task.Awaits<awaited::Child>();
     if (wait == nullptr || task.process != &parent || !wait->MayBe(child)) continue;
-    if (wait->stops || !by_stop) waker_.Wake(task, shm::WakeReason::kGo, moment);
+    if (wait->stops || !by_stop) waker_.Wake(task, shm::WakeReason::kGo, when);
   }
-  wakes_.WakeForSignals(parent, moment);
+  wakes_.WakeForSignals(parent, when);
 }
 
-void ChildStops::LookAtAwaited(Moment moment) {
+void ChildStops::LookAtAwaited(EventTime when) {
   if (waker_.counts().for_stops() == 0) return;
   for (Process& process : run_.table.processes()) {
     const Process* parent = process.dead ? nullptr : run_.table.LivingProcess(process.parent);
@@ -81,7 +81,7 @@ void ChildStops::LookAtAwaited(Moment moment) {
           const auto* wait = task.Awaits<awaited::Child>();
           return wait != nullptr && wait->stops && task.process == parent;
         });
-    if (awaited) Look(process, moment);
+    if (awaited) Look(process, when);
   }
 }
 

@@ -19,13 +19,13 @@ class ChildStops {
       : run_(run), waker_(waker), wakes_(wakes), active_(active) {}
 
   // Has it stopped or gone on since the last look? Then its parent hears of it.
-  void Look(Process& process, Moment moment);
+  void Look(Process& process, EventTime when);
   // No notification says that a process has been stopped from outside. So the processes whose
   // parents wait for such a stop are looked at.
-  void LookAtAwaited(Moment moment);
+  void LookAtAwaited(EventTime when);
   // A child has ended, or, `by_stop`, has stopped or gone on: the parent's threads that wait for
   // such a change look at it, and its signal is there.
-  void ChildChanged(Process& parent, pid_t child, bool by_stop, Moment moment);
+  void ChildChanged(Process& parent, pid_t child, bool by_stop, EventTime when);
 
  private:
   void LetStop(const Process& process);

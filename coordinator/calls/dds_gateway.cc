@@ -147,16 +147,16 @@ void DdsGateway::Join(Task& task) {
   if (process.dds_number != 0) joined_.push_back(&process);
 }
 
-void DdsGateway::Leave(Process& process, Moment moment) {
+void DdsGateway::Leave(Process& process, EventTime when) {
   if (Task* deliverer = std::exchange(process.deliverer, nullptr); deliverer != nullptr) {
     deliverer->is_deliverer = false;
-    ReleaseThoseAwaitingDeliverer(process, moment);
+    ReleaseThoseAwaitingDeliverer(process, when);
   }
   if (process.dds_number == 0) return;
   std::erase(joined_, &process);
   const std::uint32_t number = std::exchange(process.dds_number, 0);
-  hub_.Leave(number, moment.at.ns());
-  ReleaseThoseAwaitingRoom(number, moment);
+  hub_.Leave(number, when.at.ns());
+  ReleaseThoseAwaitingRoom(number, when);
   ShowDeliverersTheirDeadlines();
 }
 
@@ -183,23 +183,23 @@ bool DdsGateway::IsDelivering(const Process& process, VirtualTime now) const {
   return Waker::IsRunnable(*deliverer);
 }
 
-void DdsGateway::ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment) {
+void DdsGateway::ReleaseThoseAwaitingDeliverer(const Process& process, EventTime when) {
   if (waker_.counts().for_deliverer() == 0) return;
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->Awaits<awaited::Deliverer>() == nullptr) continue;
     if (!IsDelivering(process, task->reached)) {
-      waker_.Wake(*task, shm::WakeReason::kGo, moment);
+      waker_.Wake(*task, shm::WakeReason::kGo, when);
     }
   }
 }
 
 // Those that sent to a process more than it can take at once.
-void DdsGateway::ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment) {
+void DdsGateway::ReleaseThoseAwaitingRoom(std::uint32_t number, EventTime when) {
   if (waker_.counts().for_room() == 0 || hub_.IsFull(number)) return;
   for (Task& task : run_.table.tasks()) {
     const auto* wait = task.Awaits<awaited::Room>();
     if (wait == nullptr || wait->process != number) continue;
-    waker_.Wake(task, shm::WakeReason::kGo, moment);
+    waker_.Wake(task, shm::WakeReason::kGo, when);
   }
 }
 

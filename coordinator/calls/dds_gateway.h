@@ -19,7 +19,7 @@
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
 #include "coordinator/network/dds_paths.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
 #include "coordinator/world/world.h"
@@ -50,7 +50,7 @@ class DdsGateway {
   // What a thread notifies of DDS; what it asks for is in its reply, or it waits.
   void Handle(Task& task, const shm::Notification& note, VirtualTime deadline);
   // The process has died, or executes another program.
-  void Leave(Process& process, Moment moment);
+  void Leave(Process& process, EventTime when);
   // Others miss a stopped program when its leases are over. Looks whether it is.
   void NoteWhetherStopped(const Process& process, VirtualTime at);
 
@@ -62,7 +62,7 @@ class DdsGateway {
   void ShowDeliverersTheirDeadlines();
   // Wakes the threads that wait until the process's deliverer has handed over the due messages, if
   // it has none left to hand over.
-  void ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment);
+  void ReleaseThoseAwaitingDeliverer(const Process& process, EventTime when);
 
  private:
   dds::Speaker WhoIs(dds::Hub::Number number) const;
@@ -73,7 +73,7 @@ class DdsGateway {
   void AwaitMessages(Task& task);
   void AwaitDeliverer(Task& task, VirtualTime deadline);
   bool IsDelivering(const Process& process, VirtualTime now) const;
-  void ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment);
+  void ReleaseThoseAwaitingRoom(std::uint32_t number, EventTime when);
 
   RunState& run_;
   Waker& waker_;

@@ -4,7 +4,7 @@
 
 namespace tcs {
 
-void FollowUps::Do(Task& task, Moment call, bool last) {
+void FollowUps::Do(Task& task, EventTime call, bool last) {
   // Something else may have stopped it before it has even come to the call: then once more. And
   // once more in any case, for how far it has come is not known.
   const FollowUp what = task.follow_up;

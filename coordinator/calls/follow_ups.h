@@ -27,7 +27,7 @@ class FollowUps {
 
   // The thread has run since the kernel got the call, which it made at `call`. `last`: it is known
   // to have come back from it.
-  void Do(Task& task, Moment call, bool last);
+  void Do(Task& task, EventTime call, bool last);
 
  private:
   RunState& run_;

@@ -68,13 +68,12 @@ std::int64_t FutexCalls::WakeOp(const Task& task, const TrappedCall& call) {
 }
 
 std::int64_t FutexCalls::CarryOutWake(const Process& process, const TrappedCall& call,
-                                      Moment moment) {
+                                      EventTime when) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
   if (command != FUTEX_WAKE && command != FUTEX_WAKE_BITSET) return 0;
   return words_.Wake(
       words_.WokenKeyFor(process, call, call.args[0]), AtLeastOne(call.args[2]),
-      command == FUTEX_WAKE ? FutexWords::kAnyBit : static_cast<std::uint32_t>(call.args[5]),
-      moment);
+      command == FUTEX_WAKE ? FutexWords::kAnyBit : static_cast<std::uint32_t>(call.args[5]), when);
 }
 
 // A core that is ahead must not wake whom another one may wake, or a deadline end, before. The call

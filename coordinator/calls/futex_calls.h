@@ -32,7 +32,7 @@ class FutexCalls {
   void Handle(Task& task, const TrappedCall& call);
   // FUTEX_WAKE and FUTEX_WAKE_BITSET, from any thread of the process: the number of threads woken;
   // none for other commands.
-  std::int64_t CarryOutWake(const Process& process, const TrappedCall& call, Moment moment);
+  std::int64_t CarryOutWake(const Process& process, const TrappedCall& call, EventTime when);
 
  private:
   bool HoldsToWake(Task& task, const TrappedCall& call, int command);

@@ -122,10 +122,10 @@ void FutexWords::Enter(Task& task, awaited::Futex wait, VirtualTime deadline, bo
 
 // The joiner finds the word as it was: whether the kernel has cleared it is seen when it waits
 // again.
-void FutexWords::WakeAtEndOf(const Task& ended, Moment moment) {
+void FutexWords::WakeAtEndOf(const Task& ended, EventTime when) {
   constexpr TrappedCall kKernelsWake{.args = {0, FUTEX_WAKE}};
   if (ended.end_word == 0 || ended.process->dead) return;
-  Wake(WokenKeyFor(*ended.process, kKernelsWake, ended.end_word), 1, kAnyBit, moment);
+  Wake(WokenKeyFor(*ended.process, kKernelsWake, ended.end_word), 1, kAnyBit, when);
 }
 
 std::int64_t FutexWords::WaitForAny(Task& task, const TrappedCall& call) {
@@ -172,13 +172,13 @@ Task* FutexWords::MostUrgent(const FutexKey& key, std::uint32_t bits) {
 }
 
 std::int64_t FutexWords::Wake(const FutexKey& key, std::int64_t most, std::uint32_t bits,
-                              Moment moment) {
+                              EventTime when) {
   std::int64_t woken = 0;
   for (; woken < most; ++woken) {
     Task* best = MostUrgent(key, bits);
     if (best == nullptr) break;
     best->Awaits<awaited::Futex>()->woken_word = table_.IndexOf(best->order, key);
-    waker_.Wake(*best, shm::WakeReason::kGo, moment);
+    waker_.Wake(*best, shm::WakeReason::kGo, when);
   }
   return woken;
 }

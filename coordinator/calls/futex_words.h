@@ -30,10 +30,10 @@ class FutexWords {
   // A wait begins, after the table knows where.
   void Enter(Task& task, awaited::Futex wait, VirtualTime deadline, bool is_date);
   // Wakes at most so many, one of whose bits is in `bits`. Returns how many.
-  std::int64_t Wake(const FutexKey& key, std::int64_t most, std::uint32_t bits, Moment moment);
+  std::int64_t Wake(const FutexKey& key, std::int64_t most, std::uint32_t bits, EventTime when);
 
   // The wake that the kernel makes at a thread's end, at the word that it clears then.
-  void WakeAtEndOf(const Task& ended, Moment moment);
+  void WakeAtEndOf(const Task& ended, EventTime when);
 
   // Null: no thread waits there.
   Task* MostUrgent(const FutexKey& key, std::uint32_t bits);

@@ -38,13 +38,13 @@ void KernelObjectWaits::WaitInCall(Task& task, const KernelObject& object, Virtu
   waker_.Wait(task, {awaited::Queue{object}, deadline, true});
 }
 
-bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, Moment moment) {
+bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, EventTime when) {
   if (kind == static_cast<std::int64_t>(shm::WaitKey::kTerminals)) {
-    FlushTerminals(moment);
+    FlushTerminals(when);
     return false;
   }
   if (kind == static_cast<std::int64_t>(shm::WaitKey::kKernelWaits)) {
-    return LookAtKernelWaits(moment);
+    return LookAtKernelWaits(when);
   }
   const std::vector<WaitQueues::Thread> waiters = objects_.WaitersFor({.kind = kind, .id = id});
   bool has_let_one_go = false, found = false;
@@ -56,17 +56,17 @@ bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, Moment moment) 
     if (is_in_call && (has_let_one_go || StillWaits(task))) continue;
     has_let_one_go |= is_in_call;
     found = true;
-    waker_.Wake(task, shm::WakeReason::kGo, moment);
-    moment.at += VirtualNs(1);
+    waker_.Wake(task, shm::WakeReason::kGo, when);
+    when.at += VirtualNs(1);
   }
   return found;
 }
 
-bool KernelObjectWaits::LookAtKernelWaits(Moment moment) {
+bool KernelObjectWaits::LookAtKernelWaits(EventTime when) {
   bool found = false;
   for (Task& task : run_.table.tasks()) {
     if (task.state != TaskState::kUnseen || !HasComeBack(task)) continue;
-    waker_.Wake(task, shm::WakeReason::kGo, moment);
+    waker_.Wake(task, shm::WakeReason::kGo, when);
     task.parked = false;
     found = true;
   }
@@ -76,7 +76,7 @@ bool KernelObjectWaits::LookAtKernelWaits(Moment moment) {
 // What is written to one end of a terminal comes to the other one by a worker of the kernel, in its
 // own time; but a poll waits for that worker. Twice, for what arrives at one end may be echoed to
 // another.
-void KernelObjectWaits::FlushTerminals(Moment moment) {
+void KernelObjectWaits::FlushTerminals(EventTime when) {
   for (int turn = 0; turn < 2; ++turn) {
     for (const Task& task : run_.table.tasks()) {
       const auto* wait = task.Awaits<awaited::Descriptors>();
@@ -87,13 +87,13 @@ void KernelObjectWaits::FlushTerminals(Moment moment) {
       }
     }
   }
-  terminals_written_(moment);
+  terminals_written_(when);
 }
 
-void KernelObjectWaits::WakeAll(Moment moment) {
-  LookAtKernelWaits(moment);
+void KernelObjectWaits::WakeAll(EventTime when) {
+  LookAtKernelWaits(when);
   for (const KernelObject& object : objects_.AwaitedObjects()) {
-    Wake(object.kind, object.id, moment);
+    Wake(object.kind, object.id, when);
   }
 }
 

@@ -18,7 +18,7 @@ namespace tcs {
 class KernelObjectWaits {
  public:
   // `terminals_written`: what was written to terminals until that moment can be read.
-  KernelObjectWaits(RunState& run, Waker& waker, std::function<void(Moment)> terminals_written)
+  KernelObjectWaits(RunState& run, Waker& waker, std::function<void(EventTime)> terminals_written)
       : run_(run), waker_(waker), terminals_written_(std::move(terminals_written)) {}
 
   // As the notification kWaitKey says.
@@ -32,22 +32,22 @@ class KernelObjectWaits {
 
   // Something of that kind (shm::WaitKey) has been done to the object. True if that has woken a
   // thread.
-  bool Wake(std::int64_t kind, std::int64_t id, Moment moment);
+  bool Wake(std::int64_t kind, std::int64_t id, EventTime when);
   // A process that ends may change any object: the kernel undoes what it did to semaphores.
-  void WakeAll(Moment moment);
+  void WakeAll(EventTime when);
   // Threads that the kernel holds in a call of theirs, and has just let go on. True if there are
   // any.
-  bool LookAtKernelWaits(Moment moment);
+  bool LookAtKernelWaits(EventTime when);
 
   const WaitQueues& queues() const { return objects_; }
 
   // Something was written to a terminal.
-  void FlushTerminals(Moment moment);
+  void FlushTerminals(EventTime when);
 
  private:
   RunState& run_;
   Waker& waker_;
-  std::function<void(Moment)> terminals_written_;
+  std::function<void(EventTime)> terminals_written_;
   WaitQueues objects_;
 };
 

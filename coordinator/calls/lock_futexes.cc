@@ -49,7 +49,7 @@ std::int64_t LockFutexes::Lock(Task& task, const TrappedCall& call, int command)
 }
 
 // The lock goes to the most urgent waiter; `flags` goes with it.
-bool LockFutexes::HandOn(const FutexKey& key, std::uint32_t flags, Moment moment) {
+bool LockFutexes::HandOn(const FutexKey& key, std::uint32_t flags, EventTime when) {
   Task* next = words_.MostUrgent(key, FUTEX_BITSET_MATCH_ANY);
   if (next == nullptr) return false;
   const awaited::Futex wait = *next->Awaits<awaited::Futex>();
@@ -63,7 +63,7 @@ bool LockFutexes::HandOn(const FutexKey& key, std::uint32_t flags, Moment moment
   for (const FutexTable::Thread waiter : words_.table().WaitersAt(key)) {
     PriorityInheritance::BlockOn(run_.table.At(waiter), next);
   }
-  waker_.Wake(*next, shm::WakeReason::kGo, moment);
+  waker_.Wake(*next, shm::WakeReason::kGo, when);
   if (wait.owner != awaited::kNobody) inheritance_.Find(run_.table.At(wait.owner));
   inheritance_.Find(*next);
   return true;
@@ -79,15 +79,15 @@ std::int64_t LockFutexes::Unlock(Task& task, const TrappedCall& call) {
   return WriteMemory(task.process->pid, call.args[0], &value, sizeof value) ? 0 : -EFAULT;
 }
 
-void LockFutexes::WakeThoseWaitingFor(Task& ended, Moment moment) {
-  words_.WakeAtEndOf(ended, moment);
+void LockFutexes::WakeThoseWaitingFor(Task& ended, EventTime when) {
+  words_.WakeAtEndOf(ended, when);
   for (Task& task : run_.table.tasks()) {
     const auto* wait = task.Awaits<awaited::Futex>();
     if (wait == nullptr) continue;
     if (wait->owner == ended.order) {
-      HandOn(FutexKey(words_.table().WordOf(task.order)), kDied, moment);
+      HandOn(FutexKey(words_.table().WordOf(task.order)), kDied, when);
     } else if (wait->names_tid == ended.tid) {
-      waker_.Wake(task, shm::WakeReason::kGo, moment);
+      waker_.Wake(task, shm::WakeReason::kGo, when);
     }
   }
 }

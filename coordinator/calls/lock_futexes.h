@@ -29,10 +29,10 @@ class LockFutexes {
 
   // The threads that wait for the thread to end, or for a lock that it held, go on: the kernel's
   // own wake does not reach them.
-  void WakeThoseWaitingFor(Task& ended, Moment moment);
+  void WakeThoseWaitingFor(Task& ended, EventTime when);
 
  private:
-  bool HandOn(const FutexKey& key, std::uint32_t flags, Moment moment);
+  bool HandOn(const FutexKey& key, std::uint32_t flags, EventTime when);
   void Requeue(Task& waiter, const FutexKey& lock, Task& owner);
 
   RunState& run_;

@@ -66,7 +66,7 @@ bool Notifications::Yield(Task& task) {
 bool Notifications::Handle(Task& task, const shm::Notification& note) {
   using Kind = shm::NotificationKind;
   Robot& robot = *task.process->robot;
-  const Moment moment{task.reached};
+  const EventTime when{task.reached};
   bool looks_again = false;
   if (task.process->violates_protocol) {
     parts_.violations.AwaitExit(task);
@@ -77,7 +77,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
     return false;
   }
   const bool announces = note.kind == Kind::kSpawned || note.kind == Kind::kMadeThread;
-  if (!announces) parts_.spawns.MakerSpeaks(task, moment);
+  if (!announces) parts_.spawns.MakerSpeaks(task, when);
   task.in_vfork = false;
   task.reason = shm::WakeReason::kGo;
   task.expects_kernel = note.kind == Kind::kKernelWait;
@@ -102,7 +102,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       // for stays there, so a look at who is there would never let it wait.
       if (std::exchange(task.children_looked, task.process->children_changed) !=
           task.process->children_changed) {
-        waker_.Wake(task, shm::WakeReason::kGo, moment);
+        waker_.Wake(task, shm::WakeReason::kGo, when);
       }
       break;
     case Kind::kTimerCreate:
@@ -132,7 +132,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       task.reply[0] = parts_.dates.Set(task, note.args[0]);
       break;
     case Kind::kSignalled:
-      parts_.signals.Sent(SentBy(run_, task, note), moment);
+      parts_.signals.Sent(SentBy(run_, task, note), when);
       task.sending = {};
       break;
     case Kind::kWaitKey:
@@ -142,7 +142,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       looks_again = note.args[0] == static_cast<std::int64_t>(shm::WaitKey::kTerminals);
       // The kernel would have given those who wait what they wait for, before the waker could take
       // it again. So they go first, where its policy lets them.
-      if (parts_.objects.Wake(note.args[0], note.args[1], moment) &&
+      if (parts_.objects.Wake(note.args[0], note.args[1], when) &&
           ParametersOf(task).policy == SCHED_OTHER) {
         SchedulerOf(task).Yield(task.order);
       }

@@ -88,7 +88,7 @@ bool OffersTheSameOnly(const Task& first, const Task& other, Looks& looks) {
 
 }  // namespace
 
-bool SharedEvents::Wake(const std::vector<Task*>& awaiters, Moment moment) {
+bool SharedEvents::Wake(const std::vector<Task*>& awaiters, EventTime when) {
   std::vector<EventWaiter> waiters;
   for (const Task* task : awaiters) {
     waiters.push_back(WaiterOf(*task));
@@ -110,7 +110,7 @@ bool SharedEvents::Wake(const std::vector<Task*>& awaiters, Moment moment) {
   for (const EventShare& share : shares) {
     Task& task = run_.table.At(share.thread);
     const bool is_woken = share.passed_over_for == kNoThread && task.wait.has_value();
-    if (is_woken) waker_.Wake(task, shm::WakeReason::kGo, moment);
+    if (is_woken) waker_.Wake(task, shm::WakeReason::kGo, when);
   }
   return passes_over;
 }
@@ -133,7 +133,7 @@ void SharedEvents::PassOver(Task& task, Task& first) {
   wait.is_edge_armed = true;
 }
 
-void SharedEvents::PassOn(Task& first, Moment moment) {
+void SharedEvents::PassOn(Task& first, EventTime when) {
   if (!std::exchange(first.passes_on, false)) return;
   std::vector<EventWaiter> passed_over;
   for (Task& task : run_.table.tasks()) {
@@ -149,7 +149,7 @@ void SharedEvents::PassOn(Task& first, Moment moment) {
     run_.table.At(thread).Awaits<awaited::Descriptors>()->passed_over_for = rest.next;
   }
   Task& next = run_.table.At(rest.next);
-  waker_.Wake(next, shm::WakeReason::kGo, moment);
+  waker_.Wake(next, shm::WakeReason::kGo, when);
   next.passes_on = !rest.behind.empty();
   next.reply[1] = next.passes_on ? 1 : 0;
 }

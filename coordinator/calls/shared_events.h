@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
@@ -23,9 +23,9 @@ class SharedEvents {
   // The threads for which an event has come, in one look at the kernel: they go on, or are passed
   // over. True if some are: then the reactor is to look again before anybody acts, for it tells of
   // what they were passed over for once more.
-  bool Wake(const std::vector<Task*>& awaiters, Moment moment);
+  bool Wake(const std::vector<Task*>& awaiters, EventTime when);
   // The thread has tried what it was woken for: what it has left is for the next.
-  void PassOn(Task& first, Moment moment);
+  void PassOn(Task& first, EventTime when);
 
  private:
   void PassOver(Task& task, Task& first);

@@ -20,28 +20,28 @@ bool SignalCalls::Poll() {
   const VirtualTime now = run_.turn.lasts() ? run_.WrittenAt() : run_.latest;
   for (Task& task : run_.table.tasks()) {
     if (!task.wait.has_value()) continue;
-    const Moment moment{std::max(now, task.reached)};
+    const EventTime when{std::max(now, task.reached)};
     if (wakes_.HasSignalForTrapped(task)) {
-      wakes_.WakeForSignals(*task.process, moment);
+      wakes_.WakeForSignals(*task.process, when);
     } else if (SignalsThatEnd(*task.wait) == 0 ||
-               !wakes_.EndAwait(task, SignalsOf(run_, task), moment)) {
+               !wakes_.EndAwait(task, SignalsOf(run_, task), when)) {
       continue;
     }
-    run_.latest = moment.at;
+    run_.latest = when.at;
     ended = true;
   }
   stops_.LookAtAwaited({run_.latest});
   return ended;
 }
 
-void SignalCalls::Sent(const SentSignal& signal, Moment moment) {
+void SignalCalls::Sent(const SentSignal& signal, EventTime when) {
   if (signal.is_to_itself && !signal.MayStop()) return;
   for (Process& process : run_.table.processes()) {
     if (process.dead || (signal.pid > 0 && process.pid != signal.pid)) continue;
-    wakes_.WakeForSignal(process, signal, moment);
+    wakes_.WakeForSignal(process, signal, when);
     if (!signal.MayStop()) continue;
-    stops_.Look(process, moment);
-    looked_at_(process, moment.at);
+    stops_.Look(process, when);
+    looked_at_(process, when.at);
   }
 }
 

@@ -33,7 +33,7 @@ class SignalCalls {
         looked_at_(std::move(looked_at)) {}
 
   // A program has sent a signal.
-  void Sent(const SentSignal& signal, Moment moment);
+  void Sent(const SentSignal& signal, EventTime when);
   // No notification says that a signal has come from outside, so the threads that wait for one are
   // looked at now and then. True if one of them goes on.
   bool Poll();

@@ -17,10 +17,10 @@ std::uint64_t Deliverable(std::uint64_t pending, const SignalSets& sets, std::ui
 
 }  // namespace
 
-bool SignalWakes::EndAwait(Task& task, const SignalSets& sets, Moment moment) {
+bool SignalWakes::EndAwait(Task& task, const SignalSets& sets, EventTime when) {
   const std::uint64_t pending = sets.own_pending | sets.shared_pending;
   if (!task.wait.has_value() || (pending & SignalsThatEnd(*task.wait)) == 0) return false;
-  waker_.Wake(task, shm::WakeReason::kGo, moment);
+  waker_.Wake(task, shm::WakeReason::kGo, when);
   return true;
 }
 
@@ -30,34 +30,35 @@ void SignalWakes::HoldUntilDispatched(Task& task) {
   if (!active_.IsLast(task)) active_.Hold(task);
 }
 
-void SignalWakes::WakeFor(Task& task, const SignalSets& sets, std::uint64_t* taken, Moment moment) {
-  if (EndAwait(task, sets, moment)) return;
+void SignalWakes::WakeFor(Task& task, const SignalSets& sets, std::uint64_t* taken,
+                          EventTime when) {
+  if (EndAwait(task, sets, when)) return;
   const std::uint64_t blocked = BlockedOf(task, sets);
   const std::uint64_t own = Deliverable(sets.own_pending, sets, blocked);
   std::uint64_t shared = Deliverable(sets.shared_pending & ~*taken, sets, blocked);
   if (shared != 0 && !IsMarkedForSignal(task.tid)) shared = 0;
   *taken |= shared;
   if ((own | shared) == 0) return;
-  if (task.state == TaskState::kWaiting) waker_.Wake(task, shm::WakeReason::kSignal, moment);
+  if (task.state == TaskState::kWaiting) waker_.Wake(task, shm::WakeReason::kSignal, when);
   AnswerAhead(task);
   undispatched_.SignalCame(task, sets);
 }
 
-void SignalWakes::WakeForSignals(Process& process, Moment moment) {
-  looked_at_ = moment;
+void SignalWakes::WakeForSignals(Process& process, EventTime when) {
+  looked_at_ = when;
   std::uint64_t taken = 0;
   for (Task* task : run_.table.ThreadsOf(process)) {
     HoldUntilDispatched(*task);
-    WakeFor(*task, SignalsOf(run_, *task), &taken, moment);
+    WakeFor(*task, SignalsOf(run_, *task), &taken, when);
   }
 }
 
-void SignalWakes::WakeForSignal(Process& process, const SentSignal& sent, Moment moment) {
+void SignalWakes::WakeForSignal(Process& process, const SentSignal& sent, EventTime when) {
   Task* receiver = sent.tid == 0 ? nullptr : run_.table.Living(sent.tid);
   const bool is_known = sent.number > 0 && (sent.tid == 0 || receiver != nullptr) &&
                         waker_.counts().for_signals() == 0;
-  if (!is_known) return WakeForSignals(process, moment);
-  looked_at_ = moment;
+  if (!is_known) return WakeForSignals(process, when);
+  looked_at_ = when;
   const std::uint64_t bit = SignalBit(sent.number);
   std::uint64_t taken = 0;
   const std::vector<Task*> threads =
@@ -65,8 +66,8 @@ void SignalWakes::WakeForSignal(Process& process, const SentSignal& sent, Moment
   for (Task* task : threads) HoldUntilDispatched(*task);
   for (Task* task : threads) {
     const SignalSets sets = SignalsOf(run_, *task);
-    if ((sets.caught & bit) == 0) return WakeForSignals(process, moment);  // it may end the process
-    WakeFor(*task, sets, &taken, moment);
+    if ((sets.caught & bit) == 0) return WakeForSignals(process, when);  // it may end the process
+    WakeFor(*task, sets, &taken, when);
     const bool is_there_to_take = (sets.shared_pending & ~taken & bit) != 0;
     if (receiver != nullptr || !is_there_to_take) return;
   }

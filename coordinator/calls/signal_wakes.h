@@ -23,31 +23,31 @@ class SignalWakes {
       : run_(run), waker_(waker), active_(active), undispatched_(undispatched) {}
 
   // True if the thread waits for a signal that is pending: then it goes on.
-  bool EndAwait(Task& task, const SignalSets& sets, Moment moment);
+  bool EndAwait(Task& task, const SignalSets& sets, EventTime when);
   // The kernel has chosen the thread that handles a signal for the whole process, and has woken it.
   // A thread that sleeps on goes on waiting, whatever is pending.
-  void WakeForSignals(Process& process, Moment moment);
+  void WakeForSignals(Process& process, EventTime when);
   // The same for one signal of which its sender tells. What has a handler reaches one thread:
   // others are not asked.
-  void WakeForSignal(Process& process, const SentSignal& sent, Moment moment);
+  void WakeForSignal(Process& process, const SentSignal& sent, EventTime when);
   // Without levels the kernel keeps a signal from a thread whose call is trapped (os/trap.cc), so
   // only a look finds one that came from outside. One from inside is told by its sender.
   bool HasSignalForTrapped(Task& task) const;
   // When somebody's threads were looked at last, none where nobody's were since this was asked. One
   // that was found without a signal may have begun to handle it.
-  std::optional<Moment> TakeLook() { return std::exchange(looked_at_, std::nullopt); }
+  std::optional<EventTime> TakeLook() { return std::exchange(looked_at_, std::nullopt); }
 
  private:
   void HoldUntilDispatched(Task& task);
   // Of signals for the whole process it takes none of `taken`. Adds those that it takes.
-  void WakeFor(Task& task, const SignalSets& sets, std::uint64_t* taken, Moment moment);
+  void WakeFor(Task& task, const SignalSets& sets, std::uint64_t* taken, EventTime when);
   void AnswerAhead(Task& task);
 
   RunState& run_;
   Waker& waker_;
   ActiveThreads& active_;
   UndispatchedThreads& undispatched_;
-  std::optional<Moment> looked_at_;
+  std::optional<EventTime> looked_at_;
 };
 
 }  // namespace tcs

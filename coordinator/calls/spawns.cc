@@ -43,15 +43,15 @@ void Spawns::Begin(Task& maker, const TrappedCall& call) {
   maker.in_vfork = maker.expects_kernel = made->WaitsForChild();
 }
 
-bool Spawns::HasMadeChild(Task& maker, Moment moment) {
-  LookForCreations(maker, moment);
+bool Spawns::HasMadeChild(Task& maker, EventTime when) {
+  LookForCreations(maker, when);
   // A child of the maker's parent may never be found (TakeInChild).
   return std::none_of(maker.creations.begin(), maker.creations.end(), [](const Creation& creation) {
     return creation.call.WaitsForChild() && (creation.call.flags & CLONE_PARENT) == 0;
   });
 }
 
-bool Spawns::IsUnborn(pid_t tid, Moment moment) {
+bool Spawns::IsUnborn(pid_t tid, EventTime when) {
   const pid_t pid = ProcessOfThread(tid);
   const Process* process = run_.table.LivingProcess(pid);
   const bool is_thread = process != nullptr;
@@ -59,7 +59,7 @@ bool Spawns::IsUnborn(pid_t tid, Moment moment) {
   if (process == nullptr) return false;
   bool is_expected = false;
   for (Task* maker : run_.table.ThreadsOf(*process)) {
-    LookForCreations(*maker, moment);
+    LookForCreations(*maker, when);
     is_expected |=
         std::any_of(maker->creations.begin(), maker->creations.end(),
                     [](const Creation& creation) { return creation.call.MakesThread(); });
@@ -85,7 +85,7 @@ Task* Spawns::ActsFor(pid_t tid) {
 }
 
 // `is_done`: of what is not found there will be nothing.
-void Spawns::TakeIn(Task& maker, Moment moment, bool announced_too, bool is_done) {
+void Spawns::TakeIn(Task& maker, EventTime when, bool announced_too, bool is_done) {
   if (maker.creations.empty()) return;
   std::vector<Creation> left;
   for (const Creation& creation : std::exchange(maker.creations, {})) {
@@ -93,8 +93,7 @@ void Spawns::TakeIn(Task& maker, Moment moment, bool announced_too, bool is_done
     // While that acts for its parent, whatever it says is said as by the parent.
     const bool acts = ActsForParent(maker, call) && (!is_done || ThreadState(maker.tid) == 'D');
     const auto take_in = [&] {
-      return call.MakesThread() ? TakeInThread(maker, call, moment)
-                                : TakeInChild(maker, call, moment);
+      return call.MakesThread() ? TakeInThread(maker, call, when) : TakeInChild(maker, call, when);
     };
     const bool is_left = acts || (creation.is_announced && !announced_too);
     if (is_left || (!take_in() && !is_done)) left.push_back(creation);
@@ -140,17 +139,17 @@ Task& Spawns::AddChild(Task& maker, pid_t pid, VirtualTime at) {
   return child;
 }
 
-bool Spawns::TakeInThread(Task& maker, const CloneCall& call, Moment moment) {
+bool Spawns::TakeInThread(Task& maker, const CloneCall& call, EventTime when) {
   const pid_t tid = ThreadOf(maker, call);
   if (tid == 0) return false;
-  Task& thread = AddThread(maker, tid, moment.at);
-  parts_.registration.GivePlace(thread, moment, call.end_word, true);
+  Task& thread = AddThread(maker, tid, when.at);
+  parts_.registration.GivePlace(thread, when, call.end_word, true);
   thread.can_be_stopped &= call.HasOwnStorage();
   thread.tls = call.tls;
   return true;
 }
 
-bool Spawns::TakeInChild(Task& maker, const CloneCall& call, Moment moment) {
+bool Spawns::TakeInChild(Task& maker, const CloneCall& call, EventTime when) {
   if (call.SharesMemory() && !call.WaitsForChild()) {
     parts_.unknown_children.LookFor(*maker.process);
     return true;
@@ -164,13 +163,13 @@ bool Spawns::TakeInChild(Task& maker, const CloneCall& call, Moment moment) {
         run_.table.IsBroker(pid) || parts_.unknown_children.living().contains(pid)) {
       continue;
     }
-    Task& child = AddChild(maker, pid, moment.at);
+    Task& child = AddChild(maker, pid, when.at);
     // One that has executed another program attaches, unless that has no shim.
     const bool has_executed = call.SharesMemory();
     child.process->is_bare =
         has_executed ? parts_.bare_programs.TakeUnknown(pid) : maker.process->is_bare;
     if (!has_executed || child.process->is_bare) {
-      parts_.registration.GivePlace(child, moment, 0, !has_executed);
+      parts_.registration.GivePlace(child, when, 0, !has_executed);
     }
     return true;
   }

@@ -21,7 +21,7 @@
 #include "coordinator/processes/thread_creation.h"
 #include "coordinator/processes/unknown_children.h"
 #include "coordinator/processes/unmanaged_threads.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/run_state.h"
 #include "shm/layout.h"
 
@@ -47,17 +47,17 @@ class Spawns {
   // The thread makes one by that call, which the kernel carries out next.
   static void Begin(Task& maker, const TrappedCall& call);
   // The kernel may have made it by now. What the shim tells of may still be told.
-  void LookForCreations(Task& maker, Moment moment) { TakeIn(maker, moment, false, false); }
+  void LookForCreations(Task& maker, EventTime when) { TakeIn(maker, when, false, false); }
   // Of a thread that waits in the kernel, by vfork, for its child: the child is there. Before, the
   // thread waits for something else, as for the lock of a file that it maps.
-  bool HasMadeChild(Task& maker, Moment moment);
+  bool HasMadeChild(Task& maker, EventTime when);
   // The thread's turn is over; or it says something else than what it was to tell, and the kernel
   // is through with its call.
-  void TurnEnds(Task& maker, Moment moment) { TakeIn(maker, moment, true, false); }
-  void MakerSpeaks(Task& maker, Moment moment) { TakeIn(maker, moment, true, true); }
+  void TurnEnds(Task& maker, EventTime when) { TakeIn(maker, when, true, false); }
+  void MakerSpeaks(Task& maker, EventTime when) { TakeIn(maker, when, true, true); }
   // A thread that nobody knows has made a call: it may be one that another makes. True: it is not
   // known yet, but will be once its maker has gone on.
-  bool IsUnborn(pid_t tid, Moment moment);
+  bool IsUnborn(pid_t tid, EventTime when);
   // The thread in whose place that one acts, which is no other's; null: it acts for itself.
   Task* ActsFor(pid_t tid);
   // kSpawned, kMadeThread.
@@ -66,9 +66,9 @@ class Spawns {
  private:
   void AnnouncedThread(Task& maker, const shm::Notification& note);
   void AnnouncedProcess(Task& maker, pid_t pid);
-  void TakeIn(Task& maker, Moment moment, bool announced_too, bool is_done);
-  bool TakeInThread(Task& maker, const CloneCall& call, Moment moment);
-  bool TakeInChild(Task& maker, const CloneCall& call, Moment moment);
+  void TakeIn(Task& maker, EventTime when, bool announced_too, bool is_done);
+  bool TakeInThread(Task& maker, const CloneCall& call, EventTime when);
+  bool TakeInChild(Task& maker, const CloneCall& call, EventTime when);
   Task& AddThread(Task& maker, pid_t tid, VirtualTime at);
   Task& AddChild(Task& maker, pid_t pid, VirtualTime at);
   pid_t ThreadOf(const Task& maker, const CloneCall& call) const;

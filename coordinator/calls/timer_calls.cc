@@ -147,9 +147,9 @@ std::int64_t TimerCalls::OverrunsAt(Process& process, std::int64_t id, VirtualTi
 // What has run out by the time of the call is there when it returns.
 bool TimerCalls::BringUpToDate(Process& owner, const Task& asking, std::int64_t id) {
   if (!owner.timers.IsBehind(id, asking.reached)) return false;
-  const Moment moment{asking.reached};
-  const bool wrote = Expire(owner, moment.at);
-  if (owner.timers.HasSignals()) signals_.Route(owner, moment);
+  const EventTime when{asking.reached};
+  const bool wrote = Expire(owner, when.at);
+  if (owner.timers.HasSignals()) signals_.Route(owner, when);
   return wrote;
 }
 
@@ -177,7 +177,7 @@ void TimerCalls::ExpireCpu(const Task& ran) {
 }
 
 bool TimerCalls::FireDue(Robot& robot, VirtualTime now) {
-  const Moment moment{.at = now, .from_outside = true};
+  const EventTime when{.at = now, .from_outside = true};
   run_.latest = now;
   bool wrote = false;
   // Of most steps that is all: to look at each thread would cost more than the rest of the step.
@@ -186,7 +186,7 @@ bool TimerCalls::FireDue(Robot& robot, VirtualTime now) {
   for (Task* task : robot.tasks) {
     if (waker_.HasRunOut(*task, now)) {
       task->process->clock.ComeTo(Waker::OwnDeadlineOf(*task));
-      waker_.Wake(*task, shm::WakeReason::kDeadline, moment);
+      waker_.Wake(*task, shm::WakeReason::kDeadline, when);
     }
     Process& process = *task->process;
     if (process.timers.NextExpiry() <= now) {
@@ -194,7 +194,7 @@ bool TimerCalls::FireDue(Robot& robot, VirtualTime now) {
       process.expired = process.timers.NextExpiry();
       wrote |= Expire(process, now);
     }
-    if (process.timers.HasSignals()) signals_.Route(process, moment);
+    if (process.timers.HasSignals()) signals_.Route(process, when);
   }
   return wrote;
 }

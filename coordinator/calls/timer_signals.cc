@@ -77,7 +77,7 @@ bool TimerSignals::IsLost(const Process& process, int number, pid_t tid) const {
   return receiver != nullptr && (LostOf(SignalsOf(run_, *receiver)) & SignalBit(number)) != 0;
 }
 
-void TimerSignals::Route(Process& process, Moment moment) {
+void TimerSignals::Route(Process& process, EventTime when) {
   bool sent = false;
   for (TimerSignal& signal : process.timers.TakeSignals()) {
     if (signal.taker == 0 || run_.table.Living(signal.taker) == nullptr) {
@@ -92,13 +92,13 @@ void TimerSignals::Route(Process& process, Moment moment) {
       }
       signal.taker = taker->tid;
       if (taker->state == TaskState::kWaiting) {
-        waker_.Wake(*taker, shm::WakeReason::kSignal, moment);
+        waker_.Wake(*taker, shm::WakeReason::kSignal, when);
       }
     }
     process.timers.GiveBack(signal);
     process.robot->keeps_timer_signals = true;
   }
-  if (sent) wakes_.WakeForSignals(process, moment);
+  if (sent) wakes_.WakeForSignals(process, when);
 }
 
 void TimerSignals::SendTo(const Task& task) {

@@ -19,7 +19,7 @@ class TimerSignals {
       : run_(run), waker_(waker), wakes_(wakes) {}
 
   // Routes the signals that the process's timers have to send.
-  void Route(Process& process, Moment moment);
+  void Route(Process& process, EventTime when);
   // Sends the signals that have waited for the dispatch of this thread, which is now.
   static void SendTo(const Task& task);
   // Finds out which timers' signals have been accepted by `now`. While one of a signal's number is

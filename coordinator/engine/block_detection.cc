@@ -89,9 +89,9 @@ bool BlockDetection::LetsOthersRun() {
   task.parked = false;
   if (expected && !stopped) return true;
   if (stopped) {
-    const Moment moment{run_.WrittenAt()};
-    all_.stops.Look(*task.process, moment);
-    all_.dds.NoteWhetherStopped(*task.process, moment.at);
+    const EventTime when{run_.WrittenAt()};
+    all_.stops.Look(*task.process, when);
+    all_.dds.NoteWhetherStopped(*task.process, when.at);
     return true;
   }
   run_.Warn(fmt::format(

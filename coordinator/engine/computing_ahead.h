@@ -40,7 +40,7 @@ class ComputingAhead {
     RunRecords& records;
   };
   // `poll` has what has happened by now handled, as something of that moment.
-  ComputingAhead(const Parts& parts, std::function<PollOutcome(Moment)> poll)
+  ComputingAhead(const Parts& parts, std::function<PollOutcome(EventTime)> poll)
       : parts_(parts), poll_(std::move(poll)) {}
 
   // The processors that a run with its turns on `home` may use besides. To be asked before this
@@ -94,7 +94,7 @@ class ComputingAhead {
   FurtherCpu& CpuOf(const Task& task);
 
   const Parts parts_;
-  const std::function<PollOutcome(Moment)> poll_;
+  const std::function<PollOutcome(EventTime)> poll_;
   std::deque<FurtherCpu> cpus_;
   const BesideCpu* beside_ = nullptr;
   bool stays_home_ = false;

@@ -211,7 +211,7 @@ bool Dispatcher::AnswerEarly(Task& task) {
   if (!task.notified_early && !task.early_trap.has_value()) return false;
   task.parked = true;
   all_.waker.SetState(task, TaskState::kReady);
-  const Moment moment{task.reached};
+  const EventTime when{task.reached};
   bool finds_more = false;
   if (std::exchange(task.notified_early, false)) {
     task.reply[0] = task.reply[1] = 0;
@@ -222,7 +222,7 @@ bool Dispatcher::AnswerEarly(Task& task) {
     task.early_trap.reset();
     finds_more = all_.trapped.Handle(task, early);
   }
-  if (finds_more) all_.event_pump.Poll(EventPump::kNoWait, moment);
+  if (finds_more) all_.event_pump.Poll(EventPump::kNoWait, when);
   return true;
 }
 
@@ -272,8 +272,8 @@ void Dispatcher::EndTurn(Task& task) {
   task.used_up = UsedUpAfter(task.used_up, run_.latest, run_.turn.horizon(), run_.turn.HasSpoken());
 }
 
-void Dispatcher::TellOthersOf(Task& task, Moment call, bool looks_again) {
-  const Moment stop{task.cpu->progress};
+void Dispatcher::TellOthersOf(Task& task, EventTime call, bool looks_again) {
+  const EventTime stop{task.cpu->progress};
   all_.timers.ExpireCpu(task);
   if (task.follow_up != FollowUp::kNone) all_.follow_ups.Do(task, call, looks_again);
   if (!run_.turn.HasSpoken()) all_.spawns.TurnEnds(task, stop);
@@ -284,7 +284,7 @@ void Dispatcher::TellOthersOf(Task& task, Moment call, bool looks_again) {
 
 // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
 // the level of its last dispatch, beside whoever is next.
-void Dispatcher::LookForUntoldSignals(const Task& task, Moment stop) {
+void Dispatcher::LookForUntoldSignals(const Task& task, EventTime stop) {
   const std::uint32_t sends = SlotOf(task).signals.load();
   if (sends == 0) return;
   const bool by_library = sends == shm::kSendsByLibrary;
@@ -296,7 +296,7 @@ void Dispatcher::LookForUntoldSignals(const Task& task, Moment stop) {
 
 void Dispatcher::Answer(Task& task) {
   if (task.state == TaskState::kDead || !run_.turn.HasSpoken()) return;
-  const Moment moment{task.reached};
+  const EventTime when{task.reached};
   task.parked = true;
   // It was found held by the kernel, and has come back at the same instant.
   if (task.state == TaskState::kUnseen) all_.waker.SetState(task, TaskState::kReady);
@@ -308,7 +308,7 @@ void Dispatcher::Answer(Task& task) {
     finds_more = all_.trapped.Handle(task, *run_.turn.trapped);
   }
   // What is there already ends the wait here and now.
-  if (finds_more) all_.event_pump.Poll(EventPump::kNoWait, moment);
+  if (finds_more) all_.event_pump.Poll(EventPump::kNoWait, when);
 }
 
 void Dispatcher::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until) {
@@ -322,7 +322,7 @@ void Dispatcher::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_unti
       all_.gate_keeper.BringOthersToGates(task, {task.reached}).stops_running)
     return;
   const bool looks_again = task.brief_done;
-  const Moment call{task.cpu->progress};
+  const EventTime call{task.cpu->progress};
   BeginTurn(task, horizon, idle_until);
   AwaitStop(task);
   all_.gate_keeper.BringToGate(task);

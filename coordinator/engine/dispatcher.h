@@ -3,7 +3,7 @@
 #pragma once
 
 #include "coordinator/engine/engine_part.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/task.h"
 
 namespace tcs {
@@ -26,7 +26,7 @@ class Dispatcher : public EnginePart {
   void EndTurn(Task& task);
   // Who is concerned by how the turn has passed, whatever its thread wants now. Its calls were made
   // at `call`.
-  void TellOthersOf(Task& task, Moment call, bool looks_again);
+  void TellOthersOf(Task& task, EventTime call, bool looks_again);
   // What the thread has said at the end of its turn.
   void Answer(Task& task);
 
@@ -40,7 +40,7 @@ class Dispatcher : public EnginePart {
   bool HasMadeCall(Task& task, int* turns);
   bool GivesUpStart(Task& task, int turns);
   void ChargeSilence(Task& task);
-  void LookForUntoldSignals(const Task& task, Moment stop);
+  void LookForUntoldSignals(const Task& task, EventTime stop);
 };
 
 }  // namespace tcs

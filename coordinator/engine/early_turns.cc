@@ -72,7 +72,7 @@ void EarlyTurns::BeginOn(VirtualCpu& cpu) {
 void EarlyTurns::Take(Task& task) {
   const bool has_said = all_.beside.Await(task);
   if (task.state == TaskState::kDead) return;
-  const Moment call{task.cpu->progress};
+  const EventTime call{task.cpu->progress};
   run_.turn.Begin(task, task.beside_horizon);
   run_.turn.recorded_tsc = task.grant.base_tsc;
   if (has_said) {

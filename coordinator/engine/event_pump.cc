@@ -23,16 +23,16 @@ constexpr int kMostFalseAlarms = 6;
 
 }  // namespace
 
-PollOutcome EventPump::Poll(HostDuration timeout, Moment moment) {
-  PollOutcome found = LookOnce(timeout, moment, false);
+PollOutcome EventPump::Poll(HostDuration timeout, EventTime when) {
+  PollOutcome found = LookOnce(timeout, when, false);
   for (int turn = 0; turn < kMostFullTurns; ++turn) {
     if (!std::exchange(found.looks_again, false) && !all_.reactor.IsFull()) break;
-    found |= LookOnce(kNoWait, moment, true);
+    found |= LookOnce(kNoWait, when, true);
   }
   return all_.gate_keeper.EndCall(found);
 }
 
-PollOutcome EventPump::LookOnce(HostDuration timeout, Moment moment, bool is_rest) {
+PollOutcome EventPump::LookOnce(HostDuration timeout, EventTime when, bool is_rest) {
   const bool held =
       run_.turn.held_looks > 0 && run_.turn.lasts() && !all_.host_cpu.detector().is_armed();
   const bool rearms =
@@ -71,9 +71,9 @@ PollOutcome EventPump::LookOnce(HostDuration timeout, Moment moment, bool is_res
     }
     return {};
   }
-  moment = run_.turn.lasts() ? Moment{run_.WrittenAt()} : all_.outside_leaf.WhenItCame(moment);
-  PollOutcome found = all_.reactor.Handle(moment);
-  found |= WakeReadyAwaiters(moment);
+  when = run_.turn.lasts() ? EventTime{run_.WrittenAt()} : all_.outside_leaf.WhenItCame(when);
+  PollOutcome found = all_.reactor.Handle(when);
+  found |= WakeReadyAwaiters(when);
   if (!run_.turn.lasts() || found.stops_running || !found.blocks_running) return found;
   ++run_.turn.held_looks;
   found.stops_running = all_.block_detection.LetsOthersRun();
@@ -94,7 +94,7 @@ bool EventPump::PollWhileRunning(Task& task, HostDuration timeout) {
 }
 
 // Those whose descriptors have become ready, all at once: one event may be for one of them only.
-PollOutcome EventPump::WakeReadyAwaiters(Moment moment) {
+PollOutcome EventPump::WakeReadyAwaiters(EventTime when) {
   std::vector<Task*> awaiters = std::exchange(ready_awaiters_, {});
   // Something else may have ended the wait meanwhile.
   std::erase_if(awaiters,
@@ -104,7 +104,7 @@ PollOutcome EventPump::WakeReadyAwaiters(Moment moment) {
                       std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
                         return run_.turn.IsOn(*task->process->robot);
                       });
-  const bool passes_over = all_.shared_events.Wake(awaiters, moment);
+  const bool passes_over = all_.shared_events.Wake(awaiters, when);
   if (beside) all_.dispatcher.GoOnBesideWoken();
   return {.stops_running = !beside, .wakes_others = true, .looks_again = passes_over};
 }

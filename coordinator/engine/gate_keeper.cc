@@ -71,9 +71,9 @@ bool GateKeeper::PutOff(const Task* by, Late late) {
   return true;
 }
 
-PollOutcome GateKeeper::TakePutOff(Moment moment) {
+PollOutcome GateKeeper::TakePutOff(EventTime when) {
   PollOutcome found;
-  for (const Late& late : std::exchange(put_off_, {})) found |= late(moment);
+  for (const Late& late : std::exchange(put_off_, {})) found |= late(when);
   return found;
 }
 
@@ -103,11 +103,11 @@ bool GateKeeper::IsSaidBeforeTurn(Task& task, const shm::PipeMessage& message) {
 
 PollOutcome GateKeeper::EndCall(PollOutcome found) {
   if (!run_.turn.lasts() || !says_call_) return found;
-  const Moment moment{run_.WrittenAt()};
-  found |= TakePutOff(moment);
+  const EventTime when{run_.WrittenAt()};
+  found |= TakePutOff(when);
   while (std::exchange(found.looks_again, false))
-    found |= all_.event_pump.LookOnce(EventPump::kNoWait, moment, true);
-  if (!found.stops_running) found |= BringOthersToGates(*run_.turn.task(), moment);
+    found |= all_.event_pump.LookOnce(EventPump::kNoWait, when, true);
+  if (!found.stops_running) found |= BringOthersToGates(*run_.turn.task(), when);
   says_call_ = false;
   if (found.stops_running) {
     Task& task = *run_.turn.task();
@@ -147,18 +147,18 @@ void GateKeeper::BringToGate(Task& task) {
 // made again. So nobody may be about to make one when a thread goes on that sends a signal: those
 // that compute are told to go to their gates, which restarts what they have just called, and are
 // waited for as in BringToGate.
-PollOutcome GateKeeper::BringOthersToGates(const Task& sender, Moment moment) {
+PollOutcome GateKeeper::BringOthersToGates(const Task& sender, EventTime when) {
   if (!SendsSignal(sender)) return {};
   const auto computes = [&sender](const Task& task) {
     return &task != &sender && MayCompute(task) && ThreadState(task.tid) == 'R';
   };
-  PollOutcome found = AwaitThreads(moment, {kGateLook, kMostWayToGate}, computes, [](Task& task) {
+  PollOutcome found = AwaitThreads(when, {kGateLook, kMostWayToGate}, computes, [](Task& task) {
     task.has_signal = true;
     HostCpu::SendToGate(task.process->pid, task);
   });
-  found |= AwaitSleepAtGates(moment);
+  found |= AwaitSleepAtGates(when);
   for (int turn = 0; turn < kMostAtOnce && all_.reactor.HasMore(); ++turn) {
-    found |= all_.event_pump.LookOnce(EventPump::kNoWait, moment, true);
+    found |= all_.event_pump.LookOnce(EventPump::kNoWait, when, true);
   }
   return found;
 }
@@ -167,8 +167,8 @@ PollOutcome GateKeeper::BringOthersToGates(const Task& sender, Moment moment) {
 // asleep, may run the handler at once, as may one in a trapped call on kernels that end such calls
 // for signals: then no signal is there for it any more, and only the thread itself can tell that
 // its wait is over. The world must not go on past that.
-PollOutcome GateKeeper::AwaitSleepAtGates(Moment moment) {
-  return AwaitThreads(moment, {kShortGateLook, kMostWayFromWait}, IsAwakeInWait, [](Task&) {});
+PollOutcome GateKeeper::AwaitSleepAtGates(EventTime when) {
+  return AwaitThreads(when, {kShortGateLook, kMostWayFromWait}, IsAwakeInWait, [](Task&) {});
 }
 
 // A thread that was looked at for a signal, and had none, may be running the handler already.
@@ -176,7 +176,7 @@ PollOutcome GateKeeper::AwaitSleepAtGates(Moment moment) {
 // ended), nobody has a turn before that is known, which might be one long sleep by its own clock
 // alone, and no time is jumped over. Who has told it sleeps, and has yet to be heard.
 void GateKeeper::AwaitHandlers() {
-  while (const std::optional<Moment> look = all_.signal_wakes.TakeLook()) {
+  while (const std::optional<EventTime> look = all_.signal_wakes.TakeLook()) {
     if (!run_.is_unprivileged) return;
     AwaitSleepAtGates(*look);
     all_.event_pump.Poll(EventPump::kNoWait, *look);
@@ -184,7 +184,7 @@ void GateKeeper::AwaitHandlers() {
 }
 
 // All of that happens at the moment. `at_first` is done with each once.
-PollOutcome GateKeeper::AwaitThreads(Moment moment, const WayToGate& way,
+PollOutcome GateKeeper::AwaitThreads(EventTime when, const WayToGate& way,
                                      const std::function<bool(const Task&)>& is_awaited,
                                      const std::function<void(Task&)>& at_first) {
   PollOutcome found;
@@ -200,7 +200,7 @@ PollOutcome GateKeeper::AwaitThreads(Moment moment, const WayToGate& way,
       if (is_new) at_first(task);
       awaits |= now <= first->second + way.most;
     }
-    if (awaits) found |= all_.event_pump.LookOnce(way.look_every, moment, true);
+    if (awaits) found |= all_.event_pump.LookOnce(way.look_every, when, true);
   }
   return found;
 }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "coordinator/engine/engine_part.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/task.h"
 #include "shm/attach_protocol.h"
@@ -21,7 +21,7 @@ namespace tcs {
 class GateKeeper : public EnginePart {
  public:
   using EnginePart::EnginePart;
-  using Late = std::function<PollOutcome(Moment)>;
+  using Late = std::function<PollOutcome(EventTime)>;
 
   void TurnBegins() { says_call_ = opens_gate_ = false; }
   // The running thread has said that a call begins, and waits for the answer.
@@ -37,14 +37,14 @@ class GateKeeper : public EnginePart {
 
   // True if what `by` does happens later.
   bool PutOff(const Task* by, Late late);
-  PollOutcome TakePutOff(Moment moment);
+  PollOutcome TakePutOff(EventTime when);
   // What the message says was said before the thread's turn, which is its answer.
   bool IsSaidBeforeTurn(Task& task, const shm::PipeMessage& message);
 
   // The running thread is to stop, and has not said anything.
   void BringToGate(Task& task);
   // Before `sender`, which sends a signal, goes on: nobody else may be about to make a call.
-  PollOutcome BringOthersToGates(const Task& sender, Moment moment);
+  PollOutcome BringOthersToGates(const Task& sender, EventTime when);
   // Threads that were looked at for a signal may be running its handler already.
   void AwaitHandlers();
   // What the thread has computed since its last turn ended is a debt.
@@ -55,8 +55,8 @@ class GateKeeper : public EnginePart {
     HostDuration look_every;
     HostDuration most;  // that it takes a thread, by its CPU clock
   };
-  PollOutcome AwaitSleepAtGates(Moment moment);
-  PollOutcome AwaitThreads(Moment moment, const WayToGate& way,
+  PollOutcome AwaitSleepAtGates(EventTime when);
+  PollOutcome AwaitThreads(EventTime when, const WayToGate& way,
                            const std::function<bool(const Task&)>& is_awaited,
                            const std::function<void(Task&)>& at_first);
 

@@ -16,21 +16,21 @@ class KernelEvents : public EnginePart {
   void Register();
 
  private:
-  PollOutcome OnPipe(Subject process, std::uint32_t events, Moment moment);
-  PollOutcome OnListener(Subject listener, std::uint32_t events, Moment moment);
-  PollOutcome OnConnection(Subject subject, std::uint32_t events, Moment moment);
-  PollOutcome OnProcessEnd(Subject process, std::uint32_t events, Moment moment);
-  PollOutcome OnAwaited(Subject subject, std::uint32_t events, Moment moment);
-  PollOutcome OnOutside(Subject file, std::uint32_t events, Moment moment);
-  PollOutcome OnUnknownChildEnd(Subject child, std::uint32_t events, Moment moment);
-  PollOutcome OnTrap(Subject subject, std::uint32_t events, Moment moment);
-  PollOutcome OnCommand(Subject channel, std::uint32_t events, Moment moment);
-  PollOutcome OnNetwork(Subject robot, std::uint32_t events, Moment moment);
-  PollOutcome OnSignal(Subject subject, std::uint32_t events, Moment moment);
-  PollOutcome OnGraceRanOut(Subject subject, std::uint32_t events, Moment moment);
-  PollOutcome OnDetector(Subject subject, std::uint32_t events, Moment moment);
-  PollOutcome OnDetectorEnd(Subject subject, std::uint32_t events, Moment moment);
-  PollOutcome OnStateAsked(Subject subject, std::uint32_t events, Moment moment);
+  PollOutcome OnPipe(Subject process, std::uint32_t events, EventTime when);
+  PollOutcome OnListener(Subject listener, std::uint32_t events, EventTime when);
+  PollOutcome OnConnection(Subject subject, std::uint32_t events, EventTime when);
+  PollOutcome OnProcessEnd(Subject process, std::uint32_t events, EventTime when);
+  PollOutcome OnAwaited(Subject subject, std::uint32_t events, EventTime when);
+  PollOutcome OnOutside(Subject file, std::uint32_t events, EventTime when);
+  PollOutcome OnUnknownChildEnd(Subject child, std::uint32_t events, EventTime when);
+  PollOutcome OnTrap(Subject subject, std::uint32_t events, EventTime when);
+  PollOutcome OnCommand(Subject channel, std::uint32_t events, EventTime when);
+  PollOutcome OnNetwork(Subject robot, std::uint32_t events, EventTime when);
+  PollOutcome OnSignal(Subject subject, std::uint32_t events, EventTime when);
+  PollOutcome OnGraceRanOut(Subject subject, std::uint32_t events, EventTime when);
+  PollOutcome OnDetector(Subject subject, std::uint32_t events, EventTime when);
+  PollOutcome OnDetectorEnd(Subject subject, std::uint32_t events, EventTime when);
+  PollOutcome OnStateAsked(Subject subject, std::uint32_t events, EventTime when);
 };
 
 }  // namespace tcs

@@ -59,7 +59,7 @@ void Loop::PayDebt(Task& task, VirtualDuration passes) {
 void Loop::StepCpu(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
   if (!all_.ahead.IsNextOn(cpu)) cpu.ComeTo(std::max(cpu.progress, run_.root.Least()));
-  const Moment due{.at = cpu.progress, .from_outside = true};
+  const EventTime due{.at = cpu.progress, .from_outside = true};
   if (all_.timers.FireDue(robot, due.at)) all_.event_pump.Poll(EventPump::kNoWait, due);
   all_.gate_keeper.AwaitHandlers();
   all_.launches.StartDue(robot, cpu.progress);

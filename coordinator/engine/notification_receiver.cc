@@ -8,7 +8,7 @@
 
 namespace tcs {
 
-PollOutcome NotificationReceiver::Arrived(Task& task, Moment moment) {
+PollOutcome NotificationReceiver::Arrived(Task& task, EventTime when) {
   task.executes = false;
   if (SlotOf(task).note.kind == shm::NotificationKind::kPreempted) task.has_signal = false;
   if (all_.undispatched.WentToGate(task)) return {};
@@ -18,9 +18,9 @@ PollOutcome NotificationReceiver::Arrived(Task& task, Moment moment) {
     run_.turn.notified = true;
   } else if (task.state == TaskState::kWaiting &&
              SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
-    HandlerCame(task, moment);
+    HandlerCame(task, when);
   } else if (task.state == TaskState::kUnseen) {
-    all_.unseen_threads.ComeBack(task, moment);
+    all_.unseen_threads.ComeBack(task, when);
     task.parked = true;
     all_.host_cpu.Check(task, CpuClockOf(task));
     PollOutcome found = kConcernsAll;
@@ -29,26 +29,26 @@ PollOutcome NotificationReceiver::Arrived(Task& task, Moment moment) {
   } else if (!task.parked || task.trap_id != 0) {
     // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
     // outside has ended its trapped call.
-    if (task.state == TaskState::kWaiting) all_.waker.Wake(task, shm::WakeReason::kSignal, moment);
+    if (task.state == TaskState::kWaiting) all_.waker.Wake(task, shm::WakeReason::kSignal, when);
     all_.gate_keeper.ChargeUndispatched(task);
     task.trap_id = 0;
     task.notified_early = true;
   } else if (SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
     // The kernel let it run a handler before its turn, which is to answer what it said before. When
     // it says so depends on the host, and is no concern of whoever has a turn.
-    HandlerCame(task, moment);
+    HandlerCame(task, when);
     return {};
   }
   return kConcernsAll;
 }
 
 // A handler has interrupted what the thread said, and is to run at its next turn.
-void NotificationReceiver::HandlerCame(Task& task, Moment moment) {
+void NotificationReceiver::HandlerCame(Task& task, EventTime when) {
   if (task.state != TaskState::kWaiting) {
     SlotOf(task).note.kind = shm::NotificationKind::kResumed;
     return;
   }
-  all_.waker.Wake(task, shm::WakeReason::kSignal, moment);
+  all_.waker.Wake(task, shm::WakeReason::kSignal, when);
   task.reply[0] = 1;
 }
 
@@ -64,7 +64,7 @@ bool NotificationReceiver::Handle(Task& task) {
 }
 
 bool NotificationReceiver::PutOff(Task& task) {
-  return all_.gate_keeper.PutOff(&task, [this, &task, tid = task.tid](Moment at) {
+  return all_.gate_keeper.PutOff(&task, [this, &task, tid = task.tid](EventTime at) {
     // It may have ended meanwhile.
     if (run_.table.Living(tid) != &task) return PollOutcome{};
     task.is_put_off = false;
@@ -72,7 +72,7 @@ bool NotificationReceiver::PutOff(Task& task) {
   });
 }
 
-PollOutcome NotificationReceiver::Take(const Process& process, Moment moment) {
+PollOutcome NotificationReceiver::Take(const Process& process, EventTime when) {
   constexpr std::size_t kAtOnce = 64;
   if (process.link == nullptr) return {};
   shm::PipeMessage messages[kAtOnce];
@@ -85,7 +85,7 @@ PollOutcome NotificationReceiver::Take(const Process& process, Moment moment) {
     if (all_.gate_keeper.IsSaidBeforeTurn(*task, messages[i])) continue;
     // One that says so again and again is heard once.
     if (!task->is_put_off && run_.is_unprivileged) task->is_put_off = PutOff(*task);
-    if (!task->is_put_off) found |= Arrived(*task, moment);
+    if (!task->is_put_off) found |= Arrived(*task, when);
   }
   return found;
 }

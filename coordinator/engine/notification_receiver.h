@@ -13,7 +13,7 @@ class NotificationReceiver : public EnginePart {
   using EnginePart::EnginePart;
 
   // Of one process, so many at a time: others have their turns, too.
-  PollOutcome Take(const Process& process, Moment moment);
+  PollOutcome Take(const Process& process, EventTime when);
   // What the thread has said last is answered, at its own time. True if there may be more by now
   // that belongs to this moment. If a handler has come meanwhile, what the handler interrupted is
   // answered first: nobody may have heard of it yet.
@@ -23,8 +23,8 @@ class NotificationReceiver : public EnginePart {
   void TakeAgainIfUnmarked(Task& task);
 
  private:
-  void HandlerCame(Task& task, Moment moment);
-  PollOutcome Arrived(Task& task, Moment moment);
+  void HandlerCame(Task& task, EventTime when);
+  PollOutcome Arrived(Task& task, EventTime when);
   bool PutOff(Task& task);
 };
 

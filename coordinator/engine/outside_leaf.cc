@@ -54,11 +54,11 @@ bool OutsideLeaf::Step() {
   return true;
 }
 
-Moment OutsideLeaf::WhenItCame(Moment moment) const {
-  if (!awaits_ || run_.turn.lasts() || !all_.outside.IsAwaited()) return moment;
+EventTime OutsideLeaf::WhenItCame(EventTime when) const {
+  if (!awaits_ || run_.turn.lasts() || !all_.outside.IsAwaited()) return when;
   const VirtualTime until = run_.root.NextInput(leaf_);
-  moment.at = std::max(moment.at, std::min(all_.outside.At(all_.pacing.RunningTime()), until));
-  return moment;
+  when.at = std::max(when.at, std::min(all_.outside.At(all_.pacing.RunningTime()), until));
+  return when;
 }
 
 }  // namespace tcs

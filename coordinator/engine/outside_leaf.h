@@ -4,7 +4,7 @@
 
 #include "coordinator/engine/engine_part.h"
 #include "coordinator/policy/temporal_consistency.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 
 namespace tcs {
 
@@ -25,7 +25,7 @@ class OutsideLeaf : public EnginePart {
   bool Step();
   bool awaits() const { return awaits_; }  // in real time, just now
   // While it is waited for, what comes does so at the virtual time that the real one stands for.
-  Moment WhenItCame(Moment moment) const;
+  EventTime WhenItCame(EventTime when) const;
 
  private:
   TemporalConsistency::Leaf leaf_ = -1;

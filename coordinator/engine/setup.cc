@@ -285,8 +285,8 @@ void Setup::TellOfWaits() {
       .ends_in_trapped_call =
           [this](Task& task, shm::WakeReason reason) { all_.trapped_waits.Finish(task, reason); },
       .deliverer_is_held_up =
-          [this](const Process& process, Moment moment) {
-            all_.dds.ReleaseThoseAwaitingDeliverer(process, moment);
+          [this](const Process& process, EventTime when) {
+            all_.dds.ReleaseThoseAwaitingDeliverer(process, when);
           },
       .does_nothing_before = [this](const VirtualCpu& cpu) { return all_.ahead.EndOfDebt(cpu); },
   });
@@ -295,7 +295,7 @@ void Setup::TellOfWaits() {
 void Setup::TellOfEnds() {
   all_.thread_exit.Tell({
       .settle = [this](Task& task) { all_.settler.Settle(task); },
-      .thread_ends = [this](Task& task, Moment moment) { all_.shared_events.PassOn(task, moment); },
+      .thread_ends = [this](Task& task, EventTime when) { all_.shared_events.PassOn(task, when); },
       .thread_has_ended =
           [this](Task& task) {
             all_.beside.Forget(task);
@@ -305,23 +305,23 @@ void Setup::TellOfEnds() {
             task.kept.reset();
           },
       .wake_those_waiting_for =
-          [this](Task& task, Moment moment) { all_.locks.WakeThoseWaitingFor(task, moment); },
+          [this](Task& task, EventTime when) { all_.locks.WakeThoseWaitingFor(task, when); },
       .child_has_ended =
-          [this](Process& parent, pid_t child, Moment moment) {
-            all_.stops.ChildChanged(parent, child, false, moment);
+          [this](Process& parent, pid_t child, EventTime when) {
+            all_.stops.ChildChanged(parent, child, false, when);
           },
       .process_has_ended =
-          [this](Process& process, Moment moment) {
+          [this](Process& process, EventTime when) {
             if (process.is_client) all_.launches.ClientHasEnded(process);
             if (process.is_client && process.robot->is_ours && !run_.IsInGrace()) {
               run_.Warn(fmt::format(
                   "tcs-dds-gateway has ended at {:.3f} s, so from then on programs whose DDS uses "
                   "sockets have no sensors, clock and commands of the type dds; what it has said "
                   "on stderr says why",
-                  moment.at.seconds()));
+                  when.at.seconds()));
             }
-            all_.objects.WakeAll(moment);
-            all_.dds.Leave(process, moment);
+            all_.objects.WakeAll(when);
+            all_.dds.Leave(process, when);
           },
   });
 }

@@ -61,7 +61,7 @@ Task* TrapReceiver::TaskOf(const TrappedCall& call) {
   return task == nullptr && IsSleep(call) ? all_.spawns.ActsFor(call.tid) : task;
 }
 
-PollOutcome TrapReceiver::Arrived(int listener, Moment moment) {
+PollOutcome TrapReceiver::Arrived(int listener, EventTime when) {
   const auto call = ReceiveTrapped(listener);
   if (!call.has_value()) return {.stops_running = !run_.is_unprivileged, .wakes_others = true};
   if (LastDescriptor::AsksFor(*call)) {
@@ -77,13 +77,13 @@ PollOutcome TrapReceiver::Arrived(int listener, Moment moment) {
     all_.guard.LetThrough(*call);
     return {};
   }
-  const auto take = [this, call](Moment at) { return Take(*call, at); };
+  const auto take = [this, call](EventTime at) { return Take(*call, at); };
   Task* by = run_.table.Living(call->tid);
-  if (by != nullptr && by->turns_beside) return take(moment);
+  if (by != nullptr && by->turns_beside) return take(when);
   if (IsExecution(*call) || IsEnd(*call)) {
     if (by != nullptr) by->executes = IsExecution(*call);
     // What it has made is not its child any more afterwards, or not in its place.
-    if (by != nullptr) all_.spawns.MakerSpeaks(*by, moment);
+    if (by != nullptr) all_.spawns.MakerSpeaks(*by, when);
     // Nobody else may have the process's descriptors when they are closed.
     Process* process = run_.table.LivingProcess(ProcessOfThread(call->tid));
     if (process != nullptr && process->broker != nullptr) process->broker->End();
@@ -103,36 +103,36 @@ PollOutcome TrapReceiver::Arrived(int listener, Moment moment) {
     return {};
   }
   const bool has_place = by != nullptr && (by->slot >= 0 || !by->process->is_bare);
-  if (!has_place) by = all_.registration.Adopt(call->tid, moment);
-  if (by == nullptr && all_.spawns.IsUnborn(call->tid, moment)) {
+  if (!has_place) by = all_.registration.Adopt(call->tid, when);
+  if (by == nullptr && all_.spawns.IsUnborn(call->tid, when)) {
     unborn_calls_.push_back(*call);
     return {};
   }
   if (by == nullptr) by = TaskOf(*call);
   const bool waits = by != nullptr && (by->slot >= 0 || call->number == SYS_futex);
-  if (!waits || !all_.gate_keeper.PutOff(by, take)) return take(moment);
+  if (!waits || !all_.gate_keeper.PutOff(by, take)) return take(when);
   by->is_call_put_off = true;
   return {};
 }
 
-void TrapReceiver::TakeCallsOfNewborns(Moment moment) {
+void TrapReceiver::TakeCallsOfNewborns(EventTime when) {
   for (const TrappedCall& call : std::exchange(unborn_calls_, {})) {
-    if (all_.spawns.IsUnborn(call.tid, moment)) {
+    if (all_.spawns.IsUnborn(call.tid, when)) {
       unborn_calls_.push_back(call);
     } else {
-      Take(call, moment);
+      Take(call, when);
     }
   }
 }
 
-PollOutcome TrapReceiver::Take(const TrappedCall& call, Moment moment) {
+PollOutcome TrapReceiver::Take(const TrappedCall& call, EventTime when) {
   Task* task = TaskOf(call);
   if (task != nullptr) task->is_call_put_off = false;
   // Before it registers a thread is known if it was announced, and others may wait with it for a
   // lock of the C library; what else it calls then is the loader's business.
   const bool ours = task != nullptr && (task->slot >= 0 || call.number == SYS_futex);
   if (!ours) {
-    all_.trapped.HandleUnmanaged(call, moment);
+    all_.trapped.HandleUnmanaged(call, when);
     return {.stops_running = !run_.is_unprivileged, .wakes_others = true};
   }
   if (MakesCallAgain(*task, call)) {
@@ -146,8 +146,8 @@ PollOutcome TrapReceiver::Take(const TrappedCall& call, Moment moment) {
   }
   // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
   // again, or it came back from a call that nobody saw.
-  if (task->state == TaskState::kUnseen) all_.unseen_threads.ComeBack(*task, moment);
-  if (task->state == TaskState::kWaiting) all_.waker.Wake(*task, shm::WakeReason::kSignal, moment);
+  if (task->state == TaskState::kUnseen) all_.unseen_threads.ComeBack(*task, when);
+  if (task->state == TaskState::kWaiting) all_.waker.Wake(*task, shm::WakeReason::kSignal, when);
   // What it has done in a turn beside others is charged when that has its order.
   if (!task->turns_beside) all_.gate_keeper.ChargeUndispatched(*task);
   task->early_trap = call;

@@ -16,15 +16,15 @@ class TrapReceiver : public EnginePart {
   using EnginePart::EnginePart;
 
   // A trapped call has arrived. That of the running thread stops it like a notification.
-  PollOutcome Arrived(int listener, Moment moment);
+  PollOutcome Arrived(int listener, EventTime when);
   // The makers of threads have gone on, so that it is known whose the calls are.
-  void TakeCallsOfNewborns(Moment moment);
+  void TakeCallsOfNewborns(EventTime when);
   // A signal was to end the thread's wait, but the kernel has none for the thread: its call is
   // taken as one that it makes again.
   void TakeAgainIfUnmarked(Task& task);
 
  private:
-  PollOutcome Take(const TrappedCall& call, Moment moment);
+  PollOutcome Take(const TrappedCall& call, EventTime when);
   Task* TaskOf(const TrappedCall& call);
 
   std::vector<TrappedCall> unborn_calls_;  // of threads that are to be known soon

@@ -44,7 +44,7 @@ class TurnsBeside {
     RunRecords& records;
   };
   // `poll` has what has happened by now handled, as something of that moment.
-  TurnsBeside(const Parts& parts, std::function<PollOutcome(Moment)> poll)
+  TurnsBeside(const Parts& parts, std::function<PollOutcome(EventTime)> poll)
       : parts_(parts), poll_(std::move(poll)) {}
 
   // On the first of these processors, if there is one.
@@ -82,7 +82,7 @@ class TurnsBeside {
   bool IsOver(const Task& task) const;
 
   const Parts parts_;
-  const std::function<PollOutcome(Moment)> poll_;
+  const std::function<PollOutcome(EventTime)> poll_;
   std::unique_ptr<BesideCpu> cpu_;
 };
 

@@ -8,9 +8,9 @@
 
 namespace tcs {
 
-void UnseenThreads::ComeBack(Task& task, Moment moment) {
-  all_.outside.CallReturns(task, moment.at);
-  all_.waker.Wake(task, shm::WakeReason::kGo, moment);
+void UnseenThreads::ComeBack(Task& task, EventTime when) {
+  all_.outside.CallReturns(task, when.at);
+  all_.waker.Wake(task, shm::WakeReason::kGo, when);
 }
 
 // A thread that blocked where the shim could not see it is runnable again once the kernel says so.

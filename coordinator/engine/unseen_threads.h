@@ -2,7 +2,7 @@
 #pragma once
 
 #include "coordinator/engine/engine_part.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/task.h"
 
 namespace tcs {
@@ -14,7 +14,7 @@ class UnseenThreads : public EnginePart {
   // Those that the kernel holds no longer are ready again.
   void Poll();
   // The kernel no longer holds the thread, which was kUnseen.
-  void ComeBack(Task& task, Moment moment);
+  void ComeBack(Task& task, EventTime when);
   // Threads or processes that never registered are at work, or the kernel is at somebody's end:
   // time waits for them.
   bool UnmanagedRun();

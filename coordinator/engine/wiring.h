@@ -132,11 +132,11 @@ struct Wiring {
   UndispatchedThreads undispatched{run};
   RunClock clock;
   Pacing pacing{run.options, run.end, run.options.on_notice};
-  ComputingAhead ahead{{run, waker, host_cpu, *executor, clock, records}, [this](Moment moment) {
-                         return event_pump.Poll(EventPump::kNoWait, moment);
+  ComputingAhead ahead{{run, waker, host_cpu, *executor, clock, records}, [this](EventTime when) {
+                         return event_pump.Poll(EventPump::kNoWait, when);
                        }};
   TurnsBeside beside{{run, *executor, clock, ahead, records},
-                     [this](Moment moment) { return event_pump.Poll(EventPump::kNoWait, moment); }};
+                     [this](EventTime when) { return event_pump.Poll(EventPump::kNoWait, when); }};
   // What programs ask for, and what they wait for.
   PriorityInheritance inheritance{run, waker};
   DdsGateway dds{run, waker, world, inheritance};
@@ -163,8 +163,8 @@ struct Wiring {
   DatagramLog datagram_log;
   DatagramQueues datagrams{run, answers, datagram_log};
   PostedDatagrams posted{run, world};
-  KernelObjectWaits objects{run, waker, [this](Moment moment) {
-                              if (world_leaf.GoesOn()) world.ReceiveFromTerminals(moment.at);
+  KernelObjectWaits objects{run, waker, [this](EventTime when) {
+                              if (world_leaf.GoesOn()) world.ReceiveFromTerminals(when.at);
                             }};
   BarePrograms bare_programs{run};
   RosDaemon ros_daemon{run, peers};
@@ -182,15 +182,15 @@ struct Wiring {
   DateCalls dates{run, waker};
   Registration registration{
       {run, waker, reactor, host_cpu, sockets, bare_programs, thread_creation, thread_exit},
-      {[this](Process& process, Moment moment) {
+      {[this](Process& process, EventTime when) {
          TimerCalls::DeletePosix(process);
-         dds.Leave(process, moment);
+         dds.Leave(process, when);
        },
        [this](const Process& process) { return dds.AreaOf(process); }}};
   Launches launches{run, waker, thread_creation, sockets, traps, world, network, guard.guarded()};
   UnmanagedThreads unmanaged{run};
   UnknownChildren unknown_children{run.table, reactor, unmanaged};
-  Grace grace{run, reactor, unknown_children, [this](Moment moment) { signals.Sent({}, moment); }};
+  Grace grace{run, reactor, unknown_children, [this](EventTime when) { signals.Sent({}, when); }};
 
   Spawns spawns{run,
                 {*executor, thread_creation, registration, scheduling, bare_programs,

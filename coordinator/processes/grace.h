@@ -21,7 +21,7 @@
 
 #include "coordinator/port/unique_fd.h"
 #include "coordinator/processes/unknown_children.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/run_state.h"
 
@@ -31,7 +31,7 @@ class Grace {
  public:
   // `signalled` is called when signals have been sent, to any process.
   Grace(RunState& run, Reactor& reactor, const UnknownChildren& unknown_children,
-        std::function<void(Moment)> signalled)
+        std::function<void(EventTime)> signalled)
       : run_(run),
         reactor_(reactor),
         unknown_children_(unknown_children),
@@ -62,7 +62,7 @@ class Grace {
   RunState& run_;
   Reactor& reactor_;
   const UnknownChildren& unknown_children_;
-  std::function<void(Moment)> signalled_;
+  std::function<void(EventTime)> signalled_;
   UniqueFd timer_;  // of real time
   HostTime began_;
   std::map<pid_t, VirtualTime> kill_times_;  // of processes that got more than their grace

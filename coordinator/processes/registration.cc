@@ -18,7 +18,7 @@
 
 namespace tcs {
 
-bool Registration::Heard(int fd, Moment moment) {
+bool Registration::Heard(int fd, EventTime when) {
   std::optional<Connection> connection = parts_.sockets.Take(fd);
   if (!connection.has_value()) return false;
   const std::optional<shm::AttachHello> hello = PeekHello(fd, connection->peer);
@@ -27,7 +27,7 @@ bool Registration::Heard(int fd, Moment moment) {
     early_.insert_or_assign(hello->tid, std::move(*connection));
     return false;
   }
-  return Register(*connection, moment);
+  return Register(*connection, when);
 }
 
 bool Registration::RegistersLater(const shm::AttachHello& hello) const {
@@ -47,14 +47,14 @@ bool Registration::RegistersLater(const shm::AttachHello& hello) const {
   return run_.is_unprivileged || is_of_running;
 }
 
-void Registration::RegisterUnannounced(Moment moment) {
+void Registration::RegisterUnannounced(EventTime when) {
   std::vector<pid_t> unknown;
   for (const auto& [tid, connection] : early_) {
     if (run_.table.Living(tid) == nullptr) unknown.push_back(tid);
   }
   for (const pid_t tid : unknown) {
     const auto early = early_.extract(tid);
-    if (!early.empty()) Register(early.mapped(), moment);
+    if (!early.empty()) Register(early.mapped(), when);
   }
 }
 
@@ -64,7 +64,7 @@ void Registration::LetRegister(const Task& dispatched) {
 }
 
 // True if the running thread has to be stopped.
-bool Registration::Register(const Connection& connection, Moment moment) {
+bool Registration::Register(const Connection& connection, EventTime when) {
   const int fd = connection.fd.get();
   const TakenHello taken = TakeHello(fd, connection.peer);
   if (taken.has_gone) return false;
@@ -77,15 +77,15 @@ bool Registration::Register(const Connection& connection, Moment moment) {
     GiveDdsArea(fd, hello.pid);
     return false;
   }
-  if (const char* why = WhyNot(hello, moment); why != nullptr) {
+  if (const char* why = WhyNot(hello, when); why != nullptr) {
     Refuse(fd, why);
     return false;
   }
-  return TakePlace(fd, hello, *connection.client, moment);
+  return TakePlace(fd, hello, *connection.client, when);
 }
 
 // Why it cannot be what it says that it is; null if it is.
-const char* Registration::WhyNot(const shm::AttachHello& hello, Moment moment) {
+const char* Registration::WhyNot(const shm::AttachHello& hello, EventTime when) {
   const bool is_known = run_.table.LivingProcess(hello.pid) != nullptr;
   if (!IsThreadOf(hello.pid, hello.tid) || (!is_known && !DescendsFrom(hello.pid, getpid()))) {
     return "it was not started there";
@@ -94,7 +94,7 @@ const char* Registration::WhyNot(const shm::AttachHello& hello, Moment moment) {
   const bool is_anothers =
       known != nullptr && run_.turn.IsOf(*known) && known->process->pid != hello.pid;
   const bool is_first = hello.tid == hello.pid;
-  if (is_anothers || (is_first && !parts_.thread_exit.EndThreadsLostInExec(hello.pid, moment))) {
+  if (is_anothers || (is_first && !parts_.thread_exit.EndThreadsLostInExec(hello.pid, when))) {
     return "it has a place there already";
   }
   return nullptr;
@@ -102,8 +102,8 @@ const char* Registration::WhyNot(const shm::AttachHello& hello, Moment moment) {
 
 // True if the running thread has to be stopped.
 bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Process& client,
-                             Moment moment) {
-  Task& task = TaskFor(hello.pid, hello.tid, client, moment);
+                             EventTime when) {
+  Task& task = TaskFor(hello.pid, hello.tid, client, when);
   Process& process = *task.process;
   const bool wants_all = hello.wants == shm::AttachWants::kAll;
   if (process.violates_protocol) return false;
@@ -125,9 +125,9 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   if (!run_.turn.IsOf(task)) parts_.cpu.active().HoldUnknown(task);
   if (hello.tid == hello.pid) {
     process.is_bare = false;
-    callbacks_.starts_anew(process, moment);
+    callbacks_.starts_anew(process, when);
   }
-  PlaceAtGate(task, moment.at, !std::exchange(task.is_adopted, false));
+  PlaceAtGate(task, when.at, !std::exchange(task.is_adopted, false));
   task.can_be_stopped = true;
   const int fds[shm::kMostAttachFds] = {memory_fd_, process.link->memory_fd(),
                                         process.link->notify_fd(), brokers_end.get()};
@@ -149,7 +149,7 @@ bool Registration::RefuseForFiles(int connection) {
   return true;
 }
 
-Task* Registration::Adopt(pid_t tid, Moment moment) {
+Task* Registration::Adopt(pid_t tid, EventTime when) {
   const pid_t pid = ProcessOfThread(tid);
   Process* known = run_.table.LivingProcess(pid);
   const Process* maker = known != nullptr ? known : run_.table.LivingProcess(ParentOf(pid));
@@ -158,10 +158,10 @@ Task* Registration::Adopt(pid_t tid, Moment moment) {
   }
   Task* task = run_.table.Living(tid);
   if (task == nullptr && known != nullptr)
-    task = &parts_.thread_creation.AddThread(*known, tid, moment.at);
-  if (task == nullptr) task = &parts_.thread_creation.AddChild(pid, maker->pid, *maker, moment.at);
+    task = &parts_.thread_creation.AddThread(*known, tid, when.at);
+  if (task == nullptr) task = &parts_.thread_creation.AddChild(pid, maker->pid, *maker, when.at);
   task->process->is_bare = true;
-  GivePlace(*task, moment, 0, false);
+  GivePlace(*task, when, 0, false);
   if (task->slot < 0) return task;
   parts_.cpu.active().HoldUnknown(*task);
   task->parked = true;  // in its call
@@ -170,7 +170,7 @@ Task* Registration::Adopt(pid_t tid, Moment moment) {
 
 // No thread reads the slot, until it attaches. The first thread of a program that another one has
 // executed keeps the slot that it had.
-void Registration::GivePlace(Task& task, Moment moment, std::uint64_t end_word, bool is_newborn) {
+void Registration::GivePlace(Task& task, EventTime when, std::uint64_t end_word, bool is_newborn) {
   Process& process = *task.process;
   if (process.link == nullptr) Connect(process);
   if (process.link == nullptr || (task.slot = process.link->TakeSlot(task)) < 0) return;
@@ -179,7 +179,7 @@ void Registration::GivePlace(Task& task, Moment moment, std::uint64_t end_word, 
   TakeEndWord(task, end_word);
   task.is_adopted = true;
   task.can_be_stopped = !process.is_bare;
-  PlaceAtGate(task, moment.at, true);
+  PlaceAtGate(task, when.at, true);
   task.parked = false;
   // What it computes from here on is its own, before its first dispatch, too.
   task.metered.host_origin_ns = is_newborn ? 0 : HostClockOf(task);
@@ -189,18 +189,18 @@ void Registration::GivePlace(Task& task, Moment moment, std::uint64_t end_word, 
 // The thread that registers: known already (a client, an announced child), a further thread of a
 // known process, or a process that nobody announced. If whoever made it has ended, it is at least
 // known which client's descendant it is: by the socket that it has come to.
-Task& Registration::TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment) {
+Task& Registration::TaskFor(pid_t pid, pid_t tid, Process& client, EventTime when) {
   if (Task* known = run_.table.Living(tid); known != nullptr) {
     if (known->process->pid == pid) return *known;
-    parts_.thread_exit.End(*known, moment);  // its number is another's now
+    parts_.thread_exit.End(*known, when);  // its number is another's now
   }
   if (Process* known = run_.table.LivingProcess(pid); known != nullptr) {
-    return parts_.thread_creation.AddThread(*known, tid, moment.at);
+    return parts_.thread_creation.AddThread(*known, tid, when.at);
   }
   const pid_t parent_pid = ParentOf(pid);
   const Process* parent = run_.table.LivingProcess(parent_pid);
   return parts_.thread_creation.AddChild(pid, parent_pid, parent != nullptr ? *parent : client,
-                                         moment.at);
+                                         when.at);
 }
 
 // The C library has taken back what an ended thread had there. Who waits there already, joins.

@@ -7,7 +7,7 @@
 // registers later, at its own first dispatch; or, if its maker runs and has not said yet that it
 // has made it, once it has.
 //
-// For the coordinator's thread only. Never waits. `moment` is when it happens, for threads that did
+// For the coordinator's thread only. Never waits. `when` is when it happens, for threads that did
 // not have to wait for it.
 #pragma once
 
@@ -23,7 +23,7 @@
 #include "coordinator/processes/registration_sockets.h"
 #include "coordinator/processes/thread_creation.h"
 #include "coordinator/processes/thread_exit.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
@@ -47,7 +47,7 @@ class Registration {
 
   struct Callbacks {
     // Of a process that is new, or executes another program: what it had before is gone.
-    std::function<void(Process&, Moment)> starts_anew;
+    std::function<void(Process&, EventTime)> starts_anew;
     // The memory through which the process exchanges DDS messages; -1 if it has not joined.
     std::function<int(const Process&)> dds_area_of;
   };
@@ -60,20 +60,20 @@ class Registration {
 
   // A process that has connected says what it wants, at that descriptor. True if the running thread
   // has to be stopped.
-  bool Heard(int fd, Moment moment);
+  bool Heard(int fd, EventTime when);
   // A thread that has no place yet has made a trapped call. If its program runs without the shim,
   // or such a one has forked it, it will never register, and has its place from now on; null: it
   // will, or is unmanaged.
-  Task* Adopt(pid_t tid, Moment moment);
+  Task* Adopt(pid_t tid, EventTime when);
   // The thread, which is known, has its place without registering; it may do so later. The kernel
   // clears `end_word` when it ends (0: it is not known which). `is_newborn`: all that it has
   // computed is its own.
-  void GivePlace(Task& task, Moment moment, std::uint64_t end_word, bool is_newborn);
+  void GivePlace(Task& task, EventTime when, std::uint64_t end_word, bool is_newborn);
   // The thread is dispatched, and registers now if it has wanted to before.
   void LetRegister(const Task& dispatched);
   // The turns of the threads that make others are over, and they have announced none of the threads
   // that wait to register.
-  void RegisterUnannounced(Moment moment);
+  void RegisterUnannounced(EventTime when);
   // No further process can be followed: nobody else is accepted, and the run ends with a sentence.
   void EndForWantOfFiles();
   // The thread has ended.
@@ -83,11 +83,11 @@ class Registration {
   using Connection = RegistrationSockets::Connection;
 
   bool RegistersLater(const shm::AttachHello& hello) const;
-  bool Register(const Connection& connection, Moment moment);
-  const char* WhyNot(const shm::AttachHello& hello, Moment moment);
-  bool TakePlace(int connection, const shm::AttachHello& hello, Process& client, Moment moment);
+  bool Register(const Connection& connection, EventTime when);
+  const char* WhyNot(const shm::AttachHello& hello, EventTime when);
+  bool TakePlace(int connection, const shm::AttachHello& hello, Process& client, EventTime when);
   bool RefuseForFiles(int connection);
-  Task& TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment);
+  Task& TaskFor(pid_t pid, pid_t tid, Process& client, EventTime when);
   void TakeEndWord(Task& task, std::uint64_t address);
   void GiveDdsArea(int connection, pid_t pid);
   void Connect(Process& process);

@@ -13,7 +13,7 @@
 
 namespace tcs {
 
-void ThreadExit::End(Task& task, Moment moment) {
+void ThreadExit::End(Task& task, EventTime when) {
   Process& process = *task.process;
   usage_.Keep(task);
   task.cpu_clock_fd.Reset();
@@ -24,7 +24,7 @@ void ThreadExit::End(Task& task, Moment moment) {
     process.link->FreeSlot(task.slot);
   }
   if (process.deliverer == &task) process.deliverer = nullptr;
-  listeners_.thread_ends(task, moment);
+  listeners_.thread_ends(task, when);
   waker_.Leave(task);
   waker_.SetState(task, TaskState::kDead);
   listeners_.thread_has_ended(task);
@@ -36,19 +36,19 @@ void ThreadExit::End(Task& task, Moment moment) {
   waker_.Refresh(*process.robot);
 }
 
-void ThreadExit::EndAndWake(Task& task, Moment moment) {
-  End(task, moment);
-  listeners_.wake_those_waiting_for(task, moment);
+void ThreadExit::EndAndWake(Task& task, EventTime when) {
+  End(task, when);
+  listeners_.wake_those_waiting_for(task, when);
 }
 
-void ThreadExit::EndThreadsOf(const Process& process, const Task* except, Moment moment) {
+void ThreadExit::EndThreadsOf(const Process& process, const Task* except, EventTime when) {
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
-    if (task->process == &process && task != except) EndAndWake(*task, moment);
+    if (task->process == &process && task != except) EndAndWake(*task, when);
   }
 }
 
-bool ThreadExit::EndThreadsLostInExec(pid_t pid, Moment moment) {
+bool ThreadExit::EndThreadsLostInExec(pid_t pid, EventTime when) {
   Task* first = run_.table.Living(pid);
   Process* of = run_.table.LivingProcess(pid);
   if (of == nullptr || of->threads == 1) return true;
@@ -61,9 +61,9 @@ bool ThreadExit::EndThreadsLostInExec(pid_t pid, Moment moment) {
   const bool by_another = run_.turn.IsIn(*of) && run_.turn.task() != first;
   if (by_another) {
     listeners_.settle(*run_.turn.task());
-    moment.at = run_.turn.task()->reached;
+    when.at = run_.turn.task()->reached;
   }
-  EndThreadsOf(*of, first, moment);
+  EndThreadsOf(*of, first, when);
   of->has_unmanaged_threads = false;
   if (first == nullptr || !by_another) return true;
   of->ended.NoteChangedClocks();
@@ -73,18 +73,18 @@ bool ThreadExit::EndThreadsLostInExec(pid_t pid, Moment moment) {
   return true;
 }
 
-void ThreadExit::ProcessEnded(std::uint32_t index, Moment moment) {
+void ThreadExit::ProcessEnded(std::uint32_t index, EventTime when) {
   Process& process = run_.table.ProcessAt(index);
   if (process.dead) return;
   if (run_.turn.IsIn(process)) {
     listeners_.settle(*run_.turn.task());
-    moment.at = run_.turn.task()->reached;
+    when.at = run_.turn.task()->reached;
   }
   process.dead = true;
   if (process.asked_for_io_uring) TellOfRefusal(process);
   run_.table.ProcessEnded(process);
-  process.ended_at = moment.at;
-  EndThreadsOf(process, nullptr, moment);
+  process.ended_at = when.at;
+  EndThreadsOf(process, nullptr, when);
   UsageBook::Keep(process);
   process.timer_fds.clear();
   process.broker.reset();
@@ -96,9 +96,9 @@ void ThreadExit::ProcessEnded(std::uint32_t index, Moment moment) {
         VirtualNs(process.ended.usage().charged_ns) + process.children_cpu;
     parent->children_cpu += charged;
     parent->ended_children.Ended(process.pid, charged.ns());
-    listeners_.child_has_ended(*parent, process.pid, moment);
+    listeners_.child_has_ended(*parent, process.pid, when);
   }
-  listeners_.process_has_ended(process, moment);
+  listeners_.process_has_ended(process, when);
   if (!process.is_client) run_.table.GiveUp(process);
   Reap(process);
 }

@@ -14,7 +14,7 @@
 
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/processes/usage_book.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/process_link.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/run_state.h"
@@ -29,14 +29,14 @@ class ThreadExit {
     // The thread is running, or was right now: it is to be charged up to here.
     std::function<void(Task&)> settle;
     // The thread ends: what was to come to it goes to others. It may still wait.
-    std::function<void(Task&, Moment)> thread_ends;
+    std::function<void(Task&, EventTime)> thread_ends;
     // It has: nothing is kept for it any more.
     std::function<void(Task&)> thread_has_ended;
     // The kernel's own wake does not reach the threads that wait for its end, or for a lock of its.
-    std::function<void(Task&, Moment)> wake_those_waiting_for;
-    std::function<void(Process& parent, pid_t child, Moment)> child_has_ended;
+    std::function<void(Task&, EventTime)> wake_those_waiting_for;
+    std::function<void(Process& parent, pid_t child, EventTime)> child_has_ended;
     // After its threads, and after its parent was told.
-    std::function<void(Process&, Moment)> process_has_ended;
+    std::function<void(Process&, EventTime)> process_has_ended;
   };
 
   ThreadExit(RunState& run, Waker& waker, Reactor& reactor, HostCpu& cpu, const UsageBook& usage)
@@ -44,21 +44,21 @@ class ThreadExit {
   void Tell(Listeners listeners) { listeners_ = std::move(listeners); }
 
   // The thread is gone, or is about to; its number may be another's already.
-  void End(Task& task, Moment moment);
+  void End(Task& task, EventTime when);
   // Only the coordinator can tell the threads that wait for it.
-  void EndAndWake(Task& task, Moment moment);
+  void EndAndWake(Task& task, EventTime when);
 
   // The process has ended, as the kernel says.
-  void ProcessEnded(std::uint32_t index, Moment moment);
+  void ProcessEnded(std::uint32_t index, EventTime when);
   // A thread that executes another program becomes its process's first one; all others have ended,
   // and no other event says so. False if they have not: then it has executed nothing.
-  bool EndThreadsLostInExec(pid_t pid, Moment moment);
+  bool EndThreadsLostInExec(pid_t pid, EventTime when);
 
   // Between two steps of the loop: slots of processes that have ended can be read until then.
   void DropLinks() { ended_links_.clear(); }
 
  private:
-  void EndThreadsOf(const Process& process, const Task* except, Moment moment);
+  void EndThreadsOf(const Process& process, const Task* except, EventTime when);
   void Reap(Process& process);
   void TellOfRefusal(const Process& process) const;
 

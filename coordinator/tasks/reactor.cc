@@ -71,7 +71,7 @@ bool Reactor::HasMore() const {
   return poll(&any, 1, 0) > 0;
 }
 
-PollOutcome Reactor::Handle(Moment moment) {
+PollOutcome Reactor::Handle(EventTime when) {
   PollOutcome found;
   TCS_CHECK(!is_handling_);
   is_handling_ = true;
@@ -79,7 +79,7 @@ PollOutcome Reactor::Handle(Moment moment) {
     const Queued& one = queue_[i];
     const Handler& handler = handlers_[static_cast<std::size_t>(one.subject.tag)];
     TCS_CHECK(handler);
-    found |= handler(one.subject, one.events, moment);
+    found |= handler(one.subject, one.events, when);
   }
   count_ = 0;
   is_handling_ = false;

@@ -11,7 +11,7 @@
 #include <functional>
 
 #include "coordinator/port/unique_fd.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 
 namespace tcs {
 
@@ -58,7 +58,7 @@ struct PollOutcome {
 class Reactor {
  public:
   // `events` as epoll has them.
-  using Handler = std::function<PollOutcome(const Subject&, std::uint32_t events, Moment)>;
+  using Handler = std::function<PollOutcome(const Subject&, std::uint32_t events, EventTime)>;
 
   Reactor();
   Reactor(const Reactor&) = delete;
@@ -83,7 +83,7 @@ class Reactor {
   // True if something has come since that the next wait takes.
   bool HasMore() const;
   // Has what is queued handled, all of it at that moment.
-  PollOutcome Handle(Moment moment);
+  PollOutcome Handle(EventTime when);
 
  private:
   static constexpr std::size_t kAtOnce = 64;

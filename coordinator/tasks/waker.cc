@@ -121,20 +121,20 @@ void Waker::ShowObjectWaiters() {
   }
 }
 
-void Waker::Wake(Task& task, shm::WakeReason reason, Moment moment) {
+void Waker::Wake(Task& task, shm::WakeReason reason, EventTime when) {
   if (task.state == TaskState::kDead) return;
   const bool waited = task.wait.has_value(), reads = waited && LooksAtOthers(*task.wait);
   const bool for_messages = task.Awaits<awaited::Messages>() != nullptr;
   const bool outside =
-      moment.from_outside || (run_.turn.lasts() && !run_.turn.IsOn(*task.process->robot));
+      when.from_outside || (run_.turn.lasts() && !run_.turn.IsOn(*task.process->robot));
   const bool goes_first = outside && waited && SchedulerOf(task).PreemptsOnWakeup(task.order);
-  if (outside && reads && !for_messages) NoteLateness(task, moment.at, goes_first);
+  if (outside && reads && !for_messages) NoteLateness(task, when.at, goes_first);
   if (waited) {
     ++task.activations;
-    activations_.Released(task, reason, moment.at);
+    activations_.Released(task, reason, when.at);
     task.debt = std::max(VirtualDuration(), task.debt);  // credit ends with the activation
   }
-  task.ComeTo(std::max({task.reached, moment.at, EarliestWake()}));
+  task.ComeTo(std::max({task.reached, when.at, EarliestWake()}));
   if (waited) {
     // Where somebody more urgent ran on, the kernel's timer would still have been in time.
     const bool timed = reason == shm::WakeReason::kDeadline;

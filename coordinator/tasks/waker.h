@@ -9,7 +9,7 @@
 
 #include "coordinator/policy/robot_scheduler.h"
 #include "coordinator/tasks/activations.h"
-#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/task.h"
 #include "coordinator/tasks/wait.h"
@@ -28,7 +28,7 @@ class Waker {
     // A wait in a trapped call ends, for that reason; `wait` is still there.
     std::function<void(Task&, shm::WakeReason)> ends_in_trapped_call;
     // A deliverer of DDS messages is held up by something else.
-    std::function<void(const Process&, Moment)> deliverer_is_held_up;
+    std::function<void(const Process&, EventTime)> deliverer_is_held_up;
     // The virtual CPU does nothing before that time, though it has a turn; may be null.
     std::function<VirtualTime(const VirtualCpu&)> does_nothing_before;
   };
@@ -36,9 +36,9 @@ class Waker {
   Waker(RunState& run, Activations& activations) : run_(run), activations_(activations) {}
   void Tell(Listeners listeners) { listeners_ = std::move(listeners); }
 
-  // The thread may act again, from `moment` on, but not before others have passed that time where
+  // The thread may act again, from `when` on, but not before others have passed that time where
   // it has waited for what they do. Nothing happens to one that is dead.
-  void Wake(Task& task, shm::WakeReason reason, Moment moment);
+  void Wake(Task& task, shm::WakeReason reason, EventTime when);
   // It acts again once it can miss nothing (kRead), or be too early for nobody (kWrite).
   void Hold(Task& task, shm::NotificationKind for_what);
   // The same for a call that the kernel carries out next. Under callback nobody is ahead.

@@ -18,8 +18,8 @@ class DdsGatewayTest : public testing::Test {
                  .left = [](Task&, const Wait&) {},
                  .ends_in_trapped_call = [](Task&, shm::WakeReason) {},
                  .deliverer_is_held_up =
-                     [this](const Process& process, Moment moment) {
-                       dds_.ReleaseThoseAwaitingDeliverer(process, moment);
+                     [this](const Process& process, EventTime when) {
+                       dds_.ReleaseThoseAwaitingDeliverer(process, when);
                      }});
     robot_ = &run_.robots.emplace_back("robot", 1.0, RobotScheduler(1, true, [this](int order) {
                                          return waker_.WaitOf(run_.table.At(order));

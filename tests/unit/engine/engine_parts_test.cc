@@ -138,7 +138,7 @@ TEST_F(EngineParts, NoGateOpensBeforeACallHasBegun) {
 
 TEST_F(EngineParts, NothingIsPutOffWhereNothingCameBefore) {
   Task& task = AddThread(run_.robots[0]);
-  EXPECT_FALSE(all_.gate_keeper.PutOff(&task, [](Moment) { return PollOutcome{}; }));
+  EXPECT_FALSE(all_.gate_keeper.PutOff(&task, [](EventTime) { return PollOutcome{}; }));
 }
 
 TEST_F(EngineParts, AStopSignalIsKeptUntilItIsTaken) {
@@ -174,7 +174,7 @@ TEST_F(EngineParts, WithLevelsNothingIsPutOff) {
   Task& task = AddThread(run_.robots[0]);
   Task& other = AddThread(run_.robots[1]);
   run_.turn.Begin(task, At(kMs));
-  EXPECT_FALSE(all_.gate_keeper.PutOff(&other, [](Moment) { return PollOutcome{}; }));
+  EXPECT_FALSE(all_.gate_keeper.PutOff(&other, [](EventTime) { return PollOutcome{}; }));
 }
 
 // It goes on with the call that it begins.
@@ -214,12 +214,12 @@ TEST_F(EnginePartsAtGates, WhatOthersDoIsPutOffToTheEndOfTheCall) {
   Task& other = AddThread(run_.robots[1]);
   std::vector<int> done;
   for (const int which : {1, 2}) {
-    EXPECT_TRUE(all_.gate_keeper.PutOff(&other, [&done, which](Moment) {
+    EXPECT_TRUE(all_.gate_keeper.PutOff(&other, [&done, which](EventTime) {
       done.push_back(which);
       return PollOutcome{};
     }));
   }
-  EXPECT_FALSE(all_.gate_keeper.PutOff(task_, [](Moment) { return PollOutcome{}; }));
+  EXPECT_FALSE(all_.gate_keeper.PutOff(task_, [](EventTime) { return PollOutcome{}; }));
   EXPECT_TRUE(done.empty());
   Says(shm::NotificationKind::kCall);
   EXPECT_TRUE(all_.gate_keeper.MayGoOn(*task_));

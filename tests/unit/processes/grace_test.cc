@@ -40,7 +40,7 @@ class GraceTest : public testing::Test {
   Reactor reactor_;
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{run_.table, reactor_, unmanaged_};
-  Grace grace_{run_, reactor_, unknown_children_, [](Moment) {}};
+  Grace grace_{run_, reactor_, unknown_children_, [](EventTime) {}};
 };
 
 TEST_F(GraceTest, TheRunGoesOnFromOneClientsKillToTheNextOnes) {

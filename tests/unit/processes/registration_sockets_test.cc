@@ -15,11 +15,11 @@ namespace {
 class RegistrationSocketsTest : public testing::Test {
  protected:
   void SetUp() override {
-    reactor_.On(Tag::kListener, [this](const Subject& subject, std::uint32_t, Moment) {
+    reactor_.On(Tag::kListener, [this](const Subject& subject, std::uint32_t, EventTime) {
       EXPECT_EQ(sockets_.Accept(subject.index), has_room_);
       return PollOutcome{};
     });
-    reactor_.On(Tag::kConnection, [this](const Subject& subject, std::uint32_t, Moment) {
+    reactor_.On(Tag::kConnection, [this](const Subject& subject, std::uint32_t, EventTime) {
       auto connection = sockets_.Take(static_cast<int>(subject.index));
       EXPECT_TRUE(connection.has_value());
       if (connection.has_value()) heard_.push_back(connection->client);

@@ -27,23 +27,23 @@ class ThreadExitTest : public testing::Test {
     };
     thread_exit_.Tell({
         .settle = [note](Task& task) { note("settle", task); },
-        .thread_ends = [note](Task& task, Moment) { note("ends", task); },
+        .thread_ends = [note](Task& task, EventTime) { note("ends", task); },
         .thread_has_ended = [note](Task& task) { note("has ended", task); },
-        .wake_those_waiting_for = [note](Task& task, Moment) { note("wake for", task); },
+        .wake_those_waiting_for = [note](Task& task, EventTime) { note("wake for", task); },
         .child_has_ended =
-            [this](Process& parent, pid_t child, Moment) {
+            [this](Process& parent, pid_t child, EventTime) {
               EXPECT_EQ(&parent, client_);
               happened_.push_back("child " + std::to_string(child - kFirst));
             },
         .process_has_ended =
-            [this](Process& process, Moment) {
+            [this](Process& process, EventTime) {
               happened_.push_back("process " + std::to_string(process.pid - kFirst));
             },
     });
     waker_.Tell({.began_by_signal = [](Task&) {},
                  .left = [](Task&, const Wait&) {},
                  .ends_in_trapped_call = [](Task&, shm::WakeReason) {},
-                 .deliverer_is_held_up = [](const Process&, Moment) {}});
+                 .deliverer_is_held_up = [](const Process&, EventTime) {}});
     client_ = &AddProcess(kFirst, nullptr);
     AddThread(*client_, kFirst + 1);
     child_ = &AddProcess(kFirst + 2, client_);

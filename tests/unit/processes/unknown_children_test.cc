@@ -18,7 +18,7 @@ class UnknownChildrenTest : public testing::Test {
     if (child_ == 0) {
       for (;;) pause();
     }
-    reactor_.On(Tag::kUnknownChild, [this](const Subject& child, std::uint32_t, Moment) {
+    reactor_.On(Tag::kUnknownChild, [this](const Subject& child, std::uint32_t, EventTime) {
       ended_.push_back(static_cast<pid_t>(child.index));
       parents_.push_back(children_.Ended(ended_.back()));
       return PollOutcome{};

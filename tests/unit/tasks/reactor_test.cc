@@ -38,8 +38,8 @@ struct Seen {
 };
 
 Reactor::Handler Noting(std::vector<Seen>* seen, PollOutcome found = {}) {
-  return [seen, found](const Subject& subject, std::uint32_t events, Moment moment) {
-    seen->push_back({subject, events, moment.at});
+  return [seen, found](const Subject& subject, std::uint32_t events, EventTime when) {
+    seen->push_back({subject, events, when.at});
     return found;
   };
 }
@@ -161,7 +161,7 @@ TEST(Reactor, AHandlerMayLetItsDescriptorGo) {
   Reactor reactor;
   const Source source(0);
   int handled = 0;
-  reactor.On(Tag::kTrap, [&](const Subject&, std::uint32_t, Moment) {
+  reactor.On(Tag::kTrap, [&](const Subject&, std::uint32_t, EventTime) {
     ++handled;
     reactor.Remove(source.fd());
     return PollOutcome{};
@@ -177,7 +177,7 @@ TEST(Reactor, AHandlerMayLetItsDescriptorGo) {
 TEST(ReactorDeathTest, WaitingInAHandlerIsABug) {
   Reactor reactor;
   const Source source;
-  reactor.On(Tag::kPipe, [&](const Subject&, std::uint32_t, Moment) {
+  reactor.On(Tag::kPipe, [&](const Subject&, std::uint32_t, EventTime) {
     reactor.Wait(HostNs(0));
     return PollOutcome{};
   });

@@ -30,7 +30,7 @@ class WakerTest : public testing::Test {
     waker_.Tell({.began_by_signal = [](Task&) {},
                  .left = [this](Task&, const Wait&) { ++left_; },
                  .ends_in_trapped_call = [](Task&, shm::WakeReason) {},
-                 .deliverer_is_held_up = [](const Process&, Moment) {}});
+                 .deliverer_is_held_up = [](const Process&, EventTime) {}});
     task_ = &AddThread(AddRobot("robot"));
     other_ = &AddThread(AddRobot("other"));
   }

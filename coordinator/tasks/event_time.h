@@ -5,7 +5,7 @@
 
 namespace tcs {
 
-struct Moment {
+struct EventTime {
   VirtualTime at;             // of the robots
   bool from_outside = false;  // time or the world brings it about, not another thread
 };
