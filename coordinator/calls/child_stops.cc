@@ -54,7 +54,7 @@ void ChildStops::LetGoOn(const Process& process) {
   for (Task* task : process.robot->tasks) {
     if (task->process != &process) continue;
     if (task->state != TaskState::kWaiting) {
-      task->follow_up = FollowUp::kContinued;
+      task->after_call = AfterCall::kContinued;
       continue;
     }
     active_.LetKernelFinish(*task);

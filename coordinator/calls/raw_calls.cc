@@ -31,7 +31,7 @@ void RawCalls::Signal(Task& task) {
     task.sending = task.trapped_call;
     return;
   }
-  task.follow_up = FollowUp::kSignals;
+  task.after_call = AfterCall::kSignals;
   ReachBySignal(run_, task, 0);
   waker_.HoldInCall(task, shm::NotificationKind::kWrite);
 }
@@ -47,7 +47,7 @@ void RawCalls::Suspend(Task& task) {
 void RawCalls::Lock(Task& task) {
   task.trap_continues = true;
   task.expects_kernel = true;
-  task.follow_up = FollowUp::kKernelWaits;
+  task.after_call = AfterCall::kKernelWaits;
   waker_.HoldInCall(task, shm::NotificationKind::kWrite);
 }
 

@@ -66,7 +66,7 @@ bool RawIpc::DeadlineAt(const Task& task, std::uint64_t address, VirtualTime* de
 
 void RawIpc::OfSystemV(Task& task, const TrappedCall& call) {
   task.trap_continues = true;
-  task.follow_up = FollowUp::kObjects;
+  task.after_call = AfterCall::kObjects;
   VirtualTime deadline;
   const bool has_timeout = call.number == SYS_semtimedop && call.args[3] != 0;
   if (has_timeout && DeadlineAfter(task, call.args[3], &deadline) &&
@@ -86,7 +86,7 @@ void RawIpc::Queue(Task& task, const TrappedCall& call) {
   if (queue.fd() < 0) return;
   if (sends) {
     shm::NoteSent(SlotOf(task).receipts);
-    if (run_.header->queues_notify.load() != 0) task.follow_up = FollowUp::kSignals;
+    if (run_.header->queues_notify.load() != 0) task.after_call = AfterCall::kSignals;
   }
   const bool is_ready = queue.IsReady(events);
   if (is_ready && !sends) activations_.ReceivedRaw(task, false);

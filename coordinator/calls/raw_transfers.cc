@@ -144,12 +144,13 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
   if (transfer.reads) fd.AcknowledgeAtOnce();
   // Those who connect wait for room in the backlog.
   if (call.number == SYS_accept || call.number == SYS_accept4) {
-    task.follow_up = FollowUp::kBacklogs;
+    task.after_call = AfterCall::kBacklogs;
   }
   if (!transfer.reads) {
     shm::NoteSent(SlotOf(task).receipts);
     local_sockets_.ReachesBy(task, call);
-    if (waker_.counts().for_objects() > 0 && fd.IsTerminal()) task.follow_up = FollowUp::kTerminals;
+    if (waker_.counts().for_objects() > 0 && fd.IsTerminal())
+      task.after_call = AfterCall::kTerminals;
   } else if (fd.IsReady(events) && (transfer.flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0) {
     const bool of_timer = timers_.Find(task, number).owner != nullptr;
     if (of_timer || !fd.IsEventFd()) activations_.ReceivedRaw(task, of_timer);

@@ -123,8 +123,8 @@ void SharedEvents::PassOver(Task& task, Task& first) {
     first.passes_on = true;
     first.reply[1] = 1;
     // What the kernel carries out for it nobody tells of.
-    if (first.trap_id != 0 && first.follow_up == FollowUp::kNone) {
-      first.follow_up = FollowUp::kTaken;
+    if (first.trap_id != 0 && first.after_call == AfterCall::kNone) {
+      first.after_call = AfterCall::kTaken;
     }
   }
   // What is there already comes once more, in the next look, and is not for it.

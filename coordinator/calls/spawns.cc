@@ -39,7 +39,7 @@ void Spawns::Begin(Task& maker, const TrappedCall& call) {
   const bool is_announced = IsAnnounced(maker);
   maker.creations.push_back({*made, is_announced});
   if (is_announced || ActsForParent(maker, *made)) return;
-  maker.follow_up = FollowUp::kCreations;
+  maker.after_call = AfterCall::kCreations;
   maker.in_vfork = maker.expects_kernel = made->WaitsForChild();
 }
 

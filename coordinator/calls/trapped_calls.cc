@@ -14,7 +14,7 @@ bool TrappedCalls::Handle(Task& task, const TrappedCall& call) {
   task.trap_listener = call.listener;
   task.trap_result = 0;
   task.trap_continues = false;
-  task.follow_up = FollowUp::kNone;
+  task.after_call = AfterCall::kNone;
   task.brief_done = false;
   task.expects_kernel = task.in_vfork = false;
   spawns_.MakerSpeaks(task, {task.reached});

@@ -37,7 +37,7 @@ constexpr HostDuration kLookTurn = HostDuration::Milliseconds(50);
 constexpr int kStartTurns = 600;
 
 bool MakesThread(const Task& task) {
-  return task.follow_up == FollowUp::kCreations &&
+  return task.after_call == AfterCall::kCreations &&
          std::all_of(task.creations.begin(), task.creations.end(),
                      [](const Creation& creation) { return creation.call.MakesThread(); });
 }
@@ -228,7 +228,7 @@ bool Dispatcher::AnswerEarly(Task& task) {
 
 void Dispatcher::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until) {
   Beat();
-  task.is_brief = task.follow_up != FollowUp::kNone && !task.brief_done;
+  task.is_brief = task.after_call != AfterCall::kNone && !task.brief_done;
   // How far it comes in so short a time is the host's: under set costs no further than the call.
   if (task.is_brief && run_.IsFixed()) horizon = task.cpu->progress;
   // Others may have something to do as soon as the kernel has carried its call out.
@@ -275,7 +275,7 @@ void Dispatcher::EndTurn(Task& task) {
 void Dispatcher::TellOthersOf(Task& task, EventTime call, bool looks_again) {
   const EventTime stop{task.cpu->progress};
   all_.timers.ExpireCpu(task);
-  if (task.follow_up != FollowUp::kNone) all_.follow_ups.Do(task, call, looks_again);
+  if (task.after_call != AfterCall::kNone) all_.after_calls.Do(task, call, looks_again);
   if (!run_.turn.HasSpoken()) all_.spawns.TurnEnds(task, stop);
   task.process->timers.EndRests(stop.at);
   if (run_.turn.HasSpoken()) all_.shared_events.PassOn(task, stop);

@@ -29,7 +29,7 @@ bool WaitsForTimeAtMost(const Task& task) {
 
 // Nothing is left of an earlier call, and nothing comes of its own.
 bool IsUndisturbed(const Task& task) {
-  return task.slot >= 0 && task.trap_id == 0 && task.follow_up == FollowUp::kNone &&
+  return task.slot >= 0 && task.trap_id == 0 && task.after_call == AfterCall::kNone &&
          !task.owes_ahead && !task.notified_early && !task.early_trap.has_value() && !task.executes;
 }
 

@@ -5,12 +5,12 @@
 #include <memory>
 #include <string>
 
+#include "coordinator/calls/after_calls.h"
 #include "coordinator/calls/child_stops.h"
 #include "coordinator/calls/datagram_log.h"
 #include "coordinator/calls/datagram_queues.h"
 #include "coordinator/calls/dds_gateway.h"
 #include "coordinator/calls/descriptor_waits.h"
-#include "coordinator/calls/follow_ups.h"
 #include "coordinator/calls/futex_calls.h"
 #include "coordinator/calls/futex_words.h"
 #include "coordinator/calls/guarded_calls.h"
@@ -217,7 +217,7 @@ struct Wiring {
   TrappedCalls trapped{run,         waker,     futexes,       raw_calls, guard,
                        thread_exit, *executor, local_sockets, spawns};
   KeptCalls kept_calls{waker, descriptors};
-  FollowUps follow_ups{run, objects, shared_events, signals, signal_wakes, spawns};
+  AfterCalls after_calls{run, objects, shared_events, signals, signal_wakes, spawns};
 
   // What they notify.
   Notifications notifications{

@@ -37,8 +37,8 @@
 
 namespace tcs {
 
-// Whom a trapped call concerns that the kernel carries out (follow_ups.cc).
-enum class FollowUp {
+// Whom a trapped call concerns that the kernel carries out (after_calls.cc).
+enum class AfterCall {
   kNone,
   kBacklogs,
   kTaken,
@@ -100,19 +100,19 @@ struct Task : HostThread {
   bool trap_file_on_exec = false;  // another program
   // It had left the call, and may make it again: for the result that it has missed.
   bool answer_lost = false;
-  std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
-  bool trap_continues = false;            // or the kernel carries it out
-  FollowUp follow_up = FollowUp::kNone;   // of the call that the kernel carries out
-  bool is_brief = false;                  // it runs for that call only,
-  bool brief_done = false;                // as has been seen,
-  std::uint64_t brief_id = 0;             // by which it was trapped; 0: it is making it,
-  HostDuration brief_until;               // until its CPU clock shows that
-  bool expects_kernel = false;            // in its next call the kernel may hold it
-  TrappedCall unanswered_call;            // the last that it stopped in,
-  TrappedCall trapped_call;               // and the last but futex calls
-  TrappedCall sending;                    // by which the C library sends a signal for it, until its
-                                          // shim says that it is sent; number 0: none
-  std::uint64_t end_word = 0;             // the kernel clears it at the thread's end; 0: unknown
+  std::optional<TrappedCall> early_trap;    // made without being dispatched: for its next dispatch
+  bool trap_continues = false;              // or the kernel carries it out
+  AfterCall after_call = AfterCall::kNone;  // of the call that the kernel carries out
+  bool is_brief = false;                    // it runs for that call only,
+  bool brief_done = false;                  // as has been seen,
+  std::uint64_t brief_id = 0;               // by which it was trapped; 0: it is making it,
+  HostDuration brief_until;                 // until its CPU clock shows that
+  bool expects_kernel = false;              // in its next call the kernel may hold it
+  TrappedCall unanswered_call;              // the last that it stopped in,
+  TrappedCall trapped_call;                 // and the last but futex calls
+  TrappedCall sending;         // by which the C library sends a signal for it, until its
+                               // shim says that it is sent; number 0: none
+  std::uint64_t end_word = 0;  // the kernel clears it at the thread's end; 0: unknown
   // The priority-inheriting lock that has been handed to it, and it does not know yet; 0: none.
   std::uint64_t handed_lock = 0;
   shm::WakeReason reason = shm::WakeReason::kGo;

@@ -14,10 +14,10 @@
 
 namespace tcs {
 
-class FollowUps {
+class AfterCalls {
  public:
-  FollowUps(RunState& run, KernelObjectWaits& objects, SharedEvents& shared_events,
-            SignalCalls& signals, SignalWakes& signal_wakes, Spawns& spawns)
+  AfterCalls(RunState& run, KernelObjectWaits& objects, SharedEvents& shared_events,
+             SignalCalls& signals, SignalWakes& signal_wakes, Spawns& spawns)
       : run_(run),
         objects_(objects),
         shared_events_(shared_events),

@@ -1,46 +1,46 @@
-#include "coordinator/calls/follow_ups.h"
+#include "coordinator/calls/after_calls.h"
 
 #include "coordinator/calls/raw_ipc.h"
 
 namespace tcs {
 
-void FollowUps::Do(Task& task, EventTime call, bool last) {
+void AfterCalls::Do(Task& task, EventTime call, bool last) {
   // Something else may have stopped it before it has even come to the call: then once more. And
   // once more in any case, for how far it has come is not known.
-  const FollowUp what = task.follow_up;
+  const AfterCall what = task.after_call;
   if (last || run_.turn.HasSpoken()) {
-    task.follow_up = FollowUp::kNone;
+    task.after_call = AfterCall::kNone;
     task.brief_done = false;
   }
   switch (what) {
-    case FollowUp::kNone:
+    case AfterCall::kNone:
       break;
-    case FollowUp::kBacklogs:
+    case AfterCall::kBacklogs:
       objects_.Wake(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0, call);
       shared_events_.PassOn(task, call);
       break;
-    case FollowUp::kTaken:
+    case AfterCall::kTaken:
       shared_events_.PassOn(task, call);
       break;
-    case FollowUp::kSignals:
+    case AfterCall::kSignals:
       signals_.Sent(SentBy(run_, task, task.trapped_call), call);
       break;
-    case FollowUp::kKernelWaits:
+    case AfterCall::kKernelWaits:
       objects_.LookAtKernelWaits(call);
       break;
-    case FollowUp::kObjects: {
+    case AfterCall::kObjects: {
       objects_.LookAtKernelWaits(call);
       const KernelObject object = RawIpc::ObjectOf(task.trapped_call);
       objects_.Wake(object.kind, object.id, call);
       break;
     }
-    case FollowUp::kTerminals:
+    case AfterCall::kTerminals:
       objects_.FlushTerminals(call);
       break;
-    case FollowUp::kCreations:
+    case AfterCall::kCreations:
       spawns_.LookForCreations(task, call);
       break;
-    case FollowUp::kContinued:
+    case AfterCall::kContinued:
       if (Process* parent = run_.table.LivingProcess(task.process->parent); parent != nullptr) {
         signal_wakes_.WakeForSignals(*parent, call);
       }
