@@ -18,7 +18,7 @@ namespace {
 
 // Others than the thread, which waits, can close a descriptor or replace it.
 bool CanOthersReplace(const Process& process) {
-  return process.threads > 1 || process.has_unmanaged_threads;
+  return process.threads > 1 || process.has_unregistered_threads;
 }
 
 bool IsReplaced(const Task& task, int number, int file) {

@@ -114,8 +114,8 @@ void FutexCalls::Handle(Task& task, const TrappedCall& call) {
     case FUTEX_WAKE_BITSET:
       task.trap_result = CarryOutWake(*task.process, call, {task.reached});
       // Threads that tcs does not know wait in the kernel.
-      task.trap_continues =
-          task.process->has_unmanaged_threads && task.trap_result < static_cast<int>(call.args[2]);
+      task.trap_continues = task.process->has_unregistered_threads &&
+                            task.trap_result < static_cast<int>(call.args[2]);
       break;
     case FUTEX_REQUEUE:
     case FUTEX_CMP_REQUEUE:

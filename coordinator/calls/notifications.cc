@@ -60,7 +60,7 @@ bool Notifications::Yield(Task& task) {
   SchedulerOf(task).Yield(task.order);
   if (++task.yields < kYieldsBeforeLook) return false;
   task.yields = 0;
-  return parts_.unknown_children.LetRunBeside(*task.process);
+  return parts_.unregistered_children.LetRunBeside(*task.process);
 }
 
 bool Notifications::Handle(Task& task, const shm::Notification& note) {
@@ -97,7 +97,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kWaitChild:
       waker_.Wait(task, {awaited::Child{ProcessNamed(task, note.args[0]), note.args[1] != 0}});
-      parts_.unknown_children.LookFor(*task.process);
+      parts_.unregistered_children.LookFor(*task.process);
       // It has looked, and found none; but since then one may have ended. One that it does not wait
       // for stays there, so a look at who is there would never let it wait.
       if (std::exchange(task.children_looked, task.process->children_changed) !=

@@ -17,7 +17,7 @@
 #include "coordinator/calls/timer_calls.h"
 #include "coordinator/processes/protocol_violations.h"
 #include "coordinator/processes/slot_check.h"
-#include "coordinator/processes/unknown_children.h"
+#include "coordinator/processes/unregistered_children.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/spin_waits.h"
 #include "coordinator/tasks/waker.h"
@@ -30,7 +30,7 @@ class Notifications {
   struct Parts {
     ProtocolViolations& violations;
     DescriptorWaits& descriptors;
-    UnknownChildren& unknown_children;
+    UnregisteredChildren& unregistered_children;
     TimerCalls& timers;
     Spawns& spawns;
     SchedulingCalls& scheduling;

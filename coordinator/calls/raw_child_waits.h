@@ -4,7 +4,7 @@
 #pragma once
 
 #include "coordinator/port/traps.h"
-#include "coordinator/processes/unknown_children.h"
+#include "coordinator/processes/unregistered_children.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
 
@@ -12,7 +12,7 @@ namespace tcs {
 
 class RawChildWaits {
  public:
-  RawChildWaits(RunState& run, Waker& waker, UnknownChildren& unknown)
+  RawChildWaits(RunState& run, Waker& waker, UnregisteredChildren& unknown)
       : run_(run), waker_(waker), unknown_(unknown) {}
 
   // The thread waits, or the kernel has what the call asks for and carries it out.
@@ -23,7 +23,7 @@ class RawChildWaits {
  private:
   RunState& run_;
   Waker& waker_;
-  UnknownChildren& unknown_;
+  UnregisteredChildren& unknown_;
 };
 
 }  // namespace tcs

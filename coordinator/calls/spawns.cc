@@ -102,7 +102,7 @@ void Spawns::TakeIn(Task& maker, EventTime when, bool announced_too, bool is_don
 }
 
 bool Spawns::IsNew(const Task& maker, pid_t tid) const {
-  return run_.table.Living(tid) == nullptr && !parts_.unmanaged.IsLowered(tid) &&
+  return run_.table.Living(tid) == nullptr && !parts_.unregistered.IsLowered(tid) &&
          IsThreadOf(maker.process->pid, tid);
 }
 
@@ -151,7 +151,7 @@ bool Spawns::TakeInThread(Task& maker, const CloneCall& call, EventTime when) {
 
 bool Spawns::TakeInChild(Task& maker, const CloneCall& call, EventTime when) {
   if (call.SharesMemory() && !call.WaitsForChild()) {
-    parts_.unknown_children.LookFor(*maker.process);
+    parts_.unregistered_children.LookFor(*maker.process);
     return true;
   }
   const Process& of = *maker.process;
@@ -160,7 +160,7 @@ bool Spawns::TakeInChild(Task& maker, const CloneCall& call, EventTime when) {
   for (const pid_t pid : ChildrenOf(parent)) {
     const char state = ThreadState(pid);
     if (state == 'X' || state == 'Z' || run_.table.LivingProcess(pid) != nullptr ||
-        run_.table.IsBroker(pid) || parts_.unknown_children.living().contains(pid)) {
+        run_.table.IsBroker(pid) || parts_.unregistered_children.living().contains(pid)) {
       continue;
     }
     Task& child = AddChild(maker, pid, when.at);

@@ -7,7 +7,7 @@
 // places at once, as if they had attached, and may do so when they first make a call that the shim
 // sees. Two kinds have none: a child by vfork that has its parent's memory acts in its parent's
 // place until it executes another program; and one that has it without being a thread is not
-// managed (processes/unknown_children.h).
+// managed (processes/unregistered_children.h).
 //
 // For the coordinator's thread only.
 #pragma once
@@ -19,8 +19,8 @@
 #include "coordinator/processes/bare_programs.h"
 #include "coordinator/processes/registration.h"
 #include "coordinator/processes/thread_creation.h"
-#include "coordinator/processes/unknown_children.h"
-#include "coordinator/processes/unmanaged_threads.h"
+#include "coordinator/processes/unregistered_children.h"
+#include "coordinator/processes/unregistered_threads.h"
 #include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/run_state.h"
 #include "shm/layout.h"
@@ -36,8 +36,8 @@ class Spawns {
     Registration& registration;
     SchedulingCalls& scheduling;
     BarePrograms& bare_programs;
-    UnknownChildren& unknown_children;
-    const UnmanagedThreads& unmanaged;
+    UnregisteredChildren& unregistered_children;
+    const UnregisteredThreads& unregistered;
   };
 
   Spawns(RunState& run, Parts parts) : run_(run), parts_(parts) {}

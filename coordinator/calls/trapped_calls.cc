@@ -34,12 +34,12 @@ bool TrappedCalls::Handle(Task& task, const TrappedCall& call) {
 // A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it
 // has not registered yet. The kernel carries out what it calls; but those whom it wakes may wait
 // here.
-void TrappedCalls::HandleUnmanaged(const TrappedCall& call, EventTime when) {
+void TrappedCalls::HandleUnregistered(const TrappedCall& call, EventTime when) {
   const bool concerns_others = call.number == SYS_futex || call.number == SYS_bind;
   const pid_t pid = concerns_others ? ProcessOfThread(call.tid) : -1;
   Process* process = run_.table.LivingProcess(pid);
   if (call.number == SYS_futex && process != nullptr && run_.table.Living(call.tid) == nullptr) {
-    process->has_unmanaged_threads = run_.had_unmanaged_threads = true;
+    process->has_unregistered_threads = run_.had_unregistered_threads = true;
     futexes_.CarryOutWake(*process, call, when);
   }
   if (call.number == SYS_bind) {

@@ -35,7 +35,7 @@ class TrappedCalls {
   // moment.
   bool Handle(Task& task, const TrappedCall& call);
   // That of a thread that tcs does not know, or that has not registered yet.
-  void HandleUnmanaged(const TrappedCall& call, EventTime when);
+  void HandleUnregistered(const TrappedCall& call, EventTime when);
   // The last call of a thread.
   void Exit(Task& task, const TrappedCall& call);
   // At the end of a run the kernel carries out all calls, including the calls that wait.

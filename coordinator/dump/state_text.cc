@@ -275,7 +275,7 @@ class Page {
         fmt::format("{}{} (process {}, {})", is_client ? "" : "of ", tcs::Text(process, "client"),
                     process.at("pid").dump(), tcs::Text(process, "name"));
     if (Is(process, "stopped")) text += ", stopped by a signal";
-    if (Is(process, "unmanaged_threads")) text += ", with threads that tcs does not manage";
+    if (Is(process, "unregistered_threads")) text += ", with threads that tcs does not manage";
     if (Ns(process, "clock_lead_ns") != 0) {
       text += ", its clock is ahead by " + Seconds(Ns(process, "clock_lead_ns"));
     }
@@ -354,8 +354,9 @@ class Page {
       lines_.Add(0,
                  "the network's next packet arrives at " + Seconds(Ns(queues, "network_next_ns")));
     }
-    if (!queues.at("unknown_children").empty()) {
-      lines_.Add(0, "processes that never registered: " + ListOf(queues.at("unknown_children")));
+    if (!queues.at("unregistered_children").empty()) {
+      lines_.Add(0,
+                 "processes that never registered: " + ListOf(queues.at("unregistered_children")));
     }
   }
 

@@ -46,9 +46,9 @@ bool BlockDetection::LetsOthersRun() {
     if (run_.Preempts()) ++run_.turn.false_alarms;
     return false;
   }
-  if (state != 'S' && task.process->threads > 1) all_.held.LetDie(*task.process);
+  if (state != 'S' && task.process->threads > 1) all_.kernel_blocked.LetDie(*task.process);
   if ((state == 'Z' || state == 'X') && run_.turn.held_looks > kExitTurns &&
-      HeldThreads::HasExited(task)) {
+      KernelBlockedThreads::HasExited(task)) {
     all_.settler.Settle(task);
     all_.thread_exit.EndAndWake(task, {task.reached});
     return true;
@@ -72,7 +72,7 @@ bool BlockDetection::LetsOthersRun() {
   if (!stopped && !in_vfork && !waits_outside && (state != 'S' || task.slot < 0)) {
     if (state == 'D') {
       all_.ahead.BringHomeHolders(*task.process, run_.turn.held_looks > kLongHeldLooks);
-      all_.held.LendLevel();
+      all_.kernel_blocked.LendLevel();
     }
     return false;
   }

@@ -60,8 +60,8 @@ class ComputingAhead {
   void StayHome(Process* process);
   // Another thread of the process waits in the kernel, perhaps for what one of those that compute
   // ahead has there: the map of the process's memory. One that has come to its limit was stopped
-  // with it, and is at home from now on, where it can be let finish (held_threads.h). `long_held`:
-  // so are those that compute, for others may keep them from their processors.
+  // with it, and is at home from now on, where it can be let finish (kernel_blocked_threads.h).
+  // `long_held`: so are those that compute, for others may keep them from their processors.
   void BringHomeHolders(const Process& process, bool long_held);
   // Helpers of the physics need the further processors, too: nobody keeps them from there.
   void MakeRoomForHelpers();

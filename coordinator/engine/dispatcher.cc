@@ -136,8 +136,8 @@ bool Dispatcher::HasMadeCall(Task& task, int* turns) {
 
 // The thread has not registered in so many turns. True if it is not waited for any more.
 bool Dispatcher::GivesUpStart(Task& task, int turns) {
-  if (UnmanagedThreads::NeverRegisters(task)) {
-    all_.unmanaged.Lower(task.tid);
+  if (UnregisteredThreads::NeverRegisters(task)) {
+    all_.unregistered.Lower(task.tid);
     all_.thread_exit.End(task, {task.reached});
     return true;
   }
@@ -170,8 +170,8 @@ void Dispatcher::AwaitStop(Task& task) {
     const std::uint64_t now_tsc = all_.host_cpu.stop_tsc();
     if (!run_.is_unprivileged && starvation.IsDue(now_tsc) &&
         starvation.Starves(now_tsc, HostClockOf(task))) {
-      all_.unmanaged.LowerThoseThatCompute(all_.home_processor.cpu(),
-                                           all_.host_cpu.detector().pid());
+      all_.unregistered.LowerThoseThatCompute(all_.home_processor.cpu(),
+                                              all_.host_cpu.detector().pid());
     }
     if (task.is_brief) {
       if (HasMadeCall(task, &brief_turns)) return;

@@ -35,7 +35,7 @@ void IdleTime::WaitForDebugger() {
 bool IdleTime::HasJumpedOver() {
   const PollOutcome found = all_.event_pump.Poll(EventPump::kNoWait, {run_.latest});
   all_.unseen_threads.Poll();
-  if (all_.unseen_threads.UnmanagedRun()) {
+  if (all_.unseen_threads.UnregisteredRun()) {
     all_.event_pump.Poll(kUnseenPoll, {run_.latest});
     return false;
   }
@@ -72,8 +72,8 @@ bool IdleTime::AwaitOutside() {
     const PollOutcome found = all_.event_pump.Poll(EventPump::kNoWait, {run_.latest});
     all_.unseen_threads.Poll();
     if (found.wakes_others || !run_.root.Least().IsNever()) return true;
-    if (all_.waker.unseen() == 0 && !all_.spinners.any() && !all_.unknown_children.AnyCounts() &&
-        !all_.unseen_threads.UnmanagedRun())
+    if (all_.waker.unseen() == 0 && !all_.spinners.any() &&
+        !all_.unregistered_children.AnyCounts() && !all_.unseen_threads.UnregisteredRun())
       return false;
     const VirtualTime furthest = all_.world_leaf.FurthestOfRun();
     const HostTime now = all_.pacing.RunningTime();

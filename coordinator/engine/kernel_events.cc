@@ -23,7 +23,7 @@ void KernelEvents::Register() {
   on(Tag::kConnection, &KernelEvents::OnConnection);
   on(Tag::kProcess, &KernelEvents::OnProcessEnd);
   on(Tag::kAwaited, &KernelEvents::OnAwaited);
-  on(Tag::kUnknownChild, &KernelEvents::OnUnknownChildEnd);
+  on(Tag::kUnregisteredChild, &KernelEvents::OnUnregisteredChildEnd);
   on(Tag::kTrap, &KernelEvents::OnTrap);
   on(Tag::kCommand, &KernelEvents::OnCommand);
   on(Tag::kNetwork, &KernelEvents::OnNetwork);
@@ -84,9 +84,9 @@ PollOutcome KernelEvents::OnOutside(Subject file, std::uint32_t, EventTime when)
   return {};
 }
 
-PollOutcome KernelEvents::OnUnknownChildEnd(Subject child, std::uint32_t, EventTime when) {
+PollOutcome KernelEvents::OnUnregisteredChildEnd(Subject child, std::uint32_t, EventTime when) {
   const auto pid = static_cast<pid_t>(child.index);
-  if (Process* parent = all_.unknown_children.Ended(pid); parent != nullptr) {
+  if (Process* parent = all_.unregistered_children.Ended(pid); parent != nullptr) {
     all_.stops.ChildChanged(*parent, pid, false, when);
   }
   return kConcernsAll;

@@ -22,7 +22,7 @@ class KernelEvents : public EnginePart {
   PollOutcome OnProcessEnd(Subject process, std::uint32_t events, EventTime when);
   PollOutcome OnAwaited(Subject subject, std::uint32_t events, EventTime when);
   PollOutcome OnOutside(Subject file, std::uint32_t events, EventTime when);
-  PollOutcome OnUnknownChildEnd(Subject child, std::uint32_t events, EventTime when);
+  PollOutcome OnUnregisteredChildEnd(Subject child, std::uint32_t events, EventTime when);
   PollOutcome OnTrap(Subject subject, std::uint32_t events, EventTime when);
   PollOutcome OnCommand(Subject channel, std::uint32_t events, EventTime when);
   PollOutcome OnNetwork(Subject robot, std::uint32_t events, EventTime when);

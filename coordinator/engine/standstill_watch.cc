@@ -49,7 +49,7 @@ std::vector<std::string> StandstillWatch::WhatIsAwaited() const {
     }
     if (!first.text.empty()) awaited.push_back(NameOf(process) + ' ' + first.text);
   }
-  for (const auto& [pid, child] : unknown_children_.living()) {
+  for (const auto& [pid, child] : unregistered_children_.living()) {
     awaited.push_back(NameOf(pid) + ", which never registered with tcs, goes on");
   }
   return awaited;
@@ -66,14 +66,14 @@ bool StandstillWatch::AwaitsTerminal() const {
 
 // Who computes without tcs's knowing of it: a program with threads that never registered, a child
 // of a bare clone.
-std::vector<std::string> StandstillWatch::WhatComputesUnmanaged() const {
+std::vector<std::string> StandstillWatch::WhatComputesUnregistered() const {
   std::vector<std::string> computing;
   for (const Process& process : run_.table.processes()) {
-    if (process.has_unmanaged_threads && !process.dead) {
+    if (process.has_unregistered_threads && !process.dead) {
       computing.push_back("a thread of " + NameOf(process));
     }
   }
-  for (const auto& [pid, child] : unknown_children_.living()) {
+  for (const auto& [pid, child] : unregistered_children_.living()) {
     computing.push_back(NameOf(pid));
   }
   return computing;
@@ -94,9 +94,9 @@ void StandstillWatch::NoteStandstill(HostTime now, VirtualTime furthest) {
   const std::string why =
       std::any_of(run_.exiting.begin(), run_.exiting.end(), IsExiting)
           ? "it waits for the kernel, which is about to end a thread"
-      : unmanaged_.AnyRuns() || unknown_children_.AnyRuns()
+      : unregistered_.AnyRuns() || unregistered_children_.AnyRuns()
           ? "it waits for threads or processes that tcs does not manage: " +
-                Joined(WhatComputesUnmanaged())
+                Joined(WhatComputesUnregistered())
           : "only input from outside could make it go on; " + Joined(WhatIsAwaited());
   run_.options.on_notice(
       fmt::format("virtual time has stood still at {:.3f} s for {:.0f} s: {}; Ctrl-C ends the run",
@@ -114,7 +114,7 @@ void StandstillWatch::NoteLeftBehind(HostTime now) {
       left.push_back(NameOf(process));
     }
   }
-  for (const auto& [pid, child] : unknown_children_.living()) {
+  for (const auto& [pid, child] : unregistered_children_.living()) {
     left.push_back(NameOf(pid));
   }
   if (ended.empty() || left.empty()) return;

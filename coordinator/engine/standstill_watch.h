@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/processes/unknown_children.h"
-#include "coordinator/processes/unmanaged_threads.h"
+#include "coordinator/processes/unregistered_children.h"
+#include "coordinator/processes/unregistered_threads.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {
@@ -22,9 +22,9 @@ class StandstillWatch {
   // So much counts of what is between two looks: the run itself may have had no processor.
   static constexpr HostDuration kMostBetweenLooks = HostDuration::Seconds(2);
 
-  StandstillWatch(const RunState& run, const UnmanagedThreads& unmanaged,
-                  const UnknownChildren& unknown_children)
-      : run_(run), unmanaged_(unmanaged), unknown_children_(unknown_children) {}
+  StandstillWatch(const RunState& run, const UnregisteredThreads& unregistered,
+                  const UnregisteredChildren& unregistered_children)
+      : run_(run), unregistered_(unregistered), unregistered_children_(unregistered_children) {}
 
   // It is `now`, and the furthest of all leaves has come to `furthest`. To be called now and then.
   // What there is to tell goes to RunOptions::on_notice, which must be set.
@@ -43,11 +43,11 @@ class StandstillWatch {
   void NoteLeftBehind(HostTime now);
   bool AwaitsTerminal() const;
   std::vector<std::string> WhatIsAwaited() const;
-  std::vector<std::string> WhatComputesUnmanaged() const;
+  std::vector<std::string> WhatComputesUnregistered() const;
 
   const RunState& run_;
-  const UnmanagedThreads& unmanaged_;
-  const UnknownChildren& unknown_children_;
+  const UnregisteredThreads& unregistered_;
+  const UnregisteredChildren& unregistered_children_;
   Standstill standstill_;
   std::optional<HostTime> alone_since_;
   bool has_said_standstill_ = false, has_said_left_behind_ = false;

@@ -181,14 +181,15 @@ class Look {
                      {"full", from_.hub.IsFull(process.dds_number)},
                      {"delivering", from_.hub.IsDelivering(process.dds_number)}});
     }
-    Json unmanaged = Json::array();
-    for (const auto& [pid, child] : from_.unknown_children.living()) unmanaged.push_back(pid);
+    Json unregistered = Json::array();
+    for (const auto& [pid, child] : from_.unregistered_children.living())
+      unregistered.push_back(pid);
     return {
         {"futexes", std::move(futexes)},
         {"kernel_objects", std::move(objects)},
         {"dds", std::move(dds)},
         {"network_next_ns", from_.network.present() ? Ns(from_.network.NextDue()) : Json(nullptr)},
-        {"unknown_children", std::move(unmanaged)}};
+        {"unregistered_children", std::move(unregistered)}};
   }
 
  private:
@@ -244,7 +245,7 @@ class Look {
                   {"client", process.client == nullptr ? "" : process.client->name},
                   {"is_client", process.is_client},
                   {"stopped", process.stopped},
-                  {"unmanaged_threads", process.has_unmanaged_threads},
+                  {"unregistered_threads", process.has_unregistered_threads},
                   {"clock_lead_ns", process.clock.lead().ns()},
                   {"threads", std::move(threads)},
                   {"timers", std::move(timers)}};

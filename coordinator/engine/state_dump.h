@@ -15,7 +15,7 @@
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/network/robot_network.h"
 #include "coordinator/processes/launches.h"
-#include "coordinator/processes/unknown_children.h"
+#include "coordinator/processes/unregistered_children.h"
 #include "coordinator/queues/futex_table.h"
 #include "coordinator/queues/wait_queues.h"
 #include "coordinator/tasks/run_clock.h"
@@ -38,7 +38,7 @@ class StateDump {
     const FutexTable& futexes;
     const WaitQueues& objects;
     const dds::Hub& hub;
-    const UnknownChildren& unknown_children;
+    const UnregisteredChildren& unregistered_children;
     const Pacing& pacing;
     const StateLink& link;
   };

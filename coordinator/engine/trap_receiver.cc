@@ -132,7 +132,7 @@ PollOutcome TrapReceiver::Take(const TrappedCall& call, EventTime when) {
   // lock of the C library; what else it calls then is the loader's business.
   const bool ours = task != nullptr && (task->slot >= 0 || call.number == SYS_futex);
   if (!ours) {
-    all_.trapped.HandleUnmanaged(call, when);
+    all_.trapped.HandleUnregistered(call, when);
     return {.stops_running = !run_.is_unprivileged, .wakes_others = true};
   }
   if (MakesCallAgain(*task, call)) {

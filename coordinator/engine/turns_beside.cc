@@ -34,7 +34,7 @@ bool IsUndisturbed(const Task& task) {
 }
 
 bool IsUndisturbed(const Process& process) {
-  return process.dds_number == 0 && !process.has_unmanaged_threads && !process.stopped &&
+  return process.dds_number == 0 && !process.has_unregistered_threads && !process.stopped &&
          !process.violates_protocol && !process.killed && process.timers.NextExpiry().IsNever() &&
          !process.timers.HasCpuTimers();
 }

@@ -26,9 +26,10 @@ void UnseenThreads::Poll() {
   }
 }
 
-bool UnseenThreads::UnmanagedRun() {
+bool UnseenThreads::UnregisteredRun() {
   std::erase_if(run_.exiting, [](pid_t tid) { return !IsExiting(tid); });
-  return !run_.exiting.empty() || all_.unmanaged.AnyRuns() || all_.unknown_children.AnyRuns();
+  return !run_.exiting.empty() || all_.unregistered.AnyRuns() ||
+         all_.unregistered_children.AnyRuns();
 }
 
 }  // namespace tcs

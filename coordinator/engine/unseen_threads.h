@@ -17,7 +17,7 @@ class UnseenThreads : public EnginePart {
   void ComeBack(Task& task, EventTime when);
   // Threads or processes that never registered are at work, or the kernel is at somebody's end:
   // time waits for them.
-  bool UnmanagedRun();
+  bool UnregisteredRun();
 };
 
 }  // namespace tcs

@@ -78,7 +78,7 @@
 #include "coordinator/port/unique_fd.h"
 #include "coordinator/processes/bare_programs.h"
 #include "coordinator/processes/grace.h"
-#include "coordinator/processes/held_threads.h"
+#include "coordinator/processes/kernel_blocked_threads.h"
 #include "coordinator/processes/launches.h"
 #include "coordinator/processes/protocol_violations.h"
 #include "coordinator/processes/registration.h"
@@ -90,8 +90,8 @@
 #include "coordinator/processes/thread_exit.h"
 #include "coordinator/processes/trap_listeners.h"
 #include "coordinator/processes/undispatched_threads.h"
-#include "coordinator/processes/unknown_children.h"
-#include "coordinator/processes/unmanaged_threads.h"
+#include "coordinator/processes/unregistered_children.h"
+#include "coordinator/processes/unregistered_threads.h"
 #include "coordinator/processes/usage_book.h"
 #include "coordinator/tasks/activations.h"
 #include "coordinator/tasks/coordinator.h"
@@ -128,7 +128,7 @@ struct Wiring {
   Reactor reactor;
   std::unique_ptr<Executor> executor;
   HostCpu host_cpu;
-  HeldThreads held{run, host_cpu};
+  KernelBlockedThreads kernel_blocked{run, host_cpu};
   UndispatchedThreads undispatched{run};
   RunClock clock;
   Pacing pacing{run.options, run.end, run.options.on_notice};
@@ -188,13 +188,14 @@ struct Wiring {
        },
        [this](const Process& process) { return dds.AreaOf(process); }}};
   Launches launches{run, waker, thread_creation, sockets, traps, world, network, guard.guarded()};
-  UnmanagedThreads unmanaged{run};
-  UnknownChildren unknown_children{run.table, reactor, unmanaged};
-  Grace grace{run, reactor, unknown_children, [this](EventTime when) { signals.Sent({}, when); }};
+  UnregisteredThreads unregistered{run};
+  UnregisteredChildren unregistered_children{run.table, reactor, unregistered};
+  Grace grace{run, reactor, unregistered_children,
+              [this](EventTime when) { signals.Sent({}, when); }};
 
   Spawns spawns{run,
                 {*executor, thread_creation, registration, scheduling, bare_programs,
-                 unknown_children, unmanaged}};
+                 unregistered_children, unregistered}};
 
   // Calls that are made raw.
   RawTimes raw_times{run, waker, dates};
@@ -205,7 +206,7 @@ struct Wiring {
   RawDraws raw_draws{run};
   RawTransfers raw_transfers{run,        waker,         activations, descriptors,
                              raw_timers, local_sockets, raw_draws,   outside};
-  RawChildWaits raw_child_waits{run, waker, unknown_children};
+  RawChildWaits raw_child_waits{run, waker, unregistered_children};
   RawIpc raw_ipc{run, waker, activations, objects, descriptors};
   RawCalls raw_calls{run,
                      waker,
@@ -223,18 +224,18 @@ struct Wiring {
   Notifications notifications{
       run,
       waker,
-      {violations, descriptors, unknown_children, timers, spawns, scheduling, signals, objects, dds,
-       local_sockets, outside, spins, dates}};
+      {violations, descriptors, unregistered_children, timers, spawns, scheduling, signals, objects,
+       dds, local_sockets, outside, spins, dates}};
 
   // What users are told.
   DebuggerHold debugger{run};
-  StandstillWatch standstill{run, unmanaged, unknown_children};
+  StandstillWatch standstill{run, unregistered, unregistered_children};
   RunReporter reporter{run,
                        {clock, world, usage, launches, dds.records(), pacing, activations, answers,
                         datagrams, words.table()}};
   StateLink state_link;
   StateDump state_dump{{run, clock, host_cpu, world, network, launches, ahead, words.table(),
-                        objects.queues(), dds.hub(), unknown_children, pacing, state_link}};
+                        objects.queues(), dds.hub(), unregistered_children, pacing, state_link}};
 
   // The run's memory, which all clients can read and of which run.header is the beginning; null
   // before the set-up. And its descriptor.

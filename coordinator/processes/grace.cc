@@ -46,7 +46,7 @@ void Grace::Begin() {
     if (ThreadState(process.pid) == 'T') kill(process.pid, SIGCONT);
     GrantDebtOf(process);
   }
-  for (const auto& [pid, child] : unknown_children_.living()) {
+  for (const auto& [pid, child] : unregistered_children_.living()) {
     const Process* parent = run_.table.LivingProcess(child.parent);
     kill(pid, parent == nullptr ? SIGTERM : StopSignalOf(*parent));
   }

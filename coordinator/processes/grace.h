@@ -20,7 +20,7 @@
 #include <utility>
 
 #include "coordinator/port/unique_fd.h"
-#include "coordinator/processes/unknown_children.h"
+#include "coordinator/processes/unregistered_children.h"
 #include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/run_state.h"
@@ -30,11 +30,11 @@ namespace tcs {
 class Grace {
  public:
   // `signalled` is called when signals have been sent, to any process.
-  Grace(RunState& run, Reactor& reactor, const UnknownChildren& unknown_children,
+  Grace(RunState& run, Reactor& reactor, const UnregisteredChildren& unregistered_children,
         std::function<void(EventTime)> signalled)
       : run_(run),
         reactor_(reactor),
-        unknown_children_(unknown_children),
+        unregistered_children_(unregistered_children),
         signalled_(std::move(signalled)) {}
 
   // RunState::grace_began is set.
@@ -61,7 +61,7 @@ class Grace {
 
   RunState& run_;
   Reactor& reactor_;
-  const UnknownChildren& unknown_children_;
+  const UnregisteredChildren& unregistered_children_;
   std::function<void(EventTime)> signalled_;
   UniqueFd timer_;  // of real time
   HostTime began_;

@@ -63,7 +63,7 @@ class Registration {
   bool Heard(int fd, EventTime when);
   // A thread that has no place yet has made a trapped call. If its program runs without the shim,
   // or such a one has forked it, it will never register, and has its place from now on; null: it
-  // will, or is unmanaged.
+  // will, or is unregistered.
   Task* Adopt(pid_t tid, EventTime when);
   // The thread, which is known, has its place without registering; it may do so later. The kernel
   // clears `end_word` when it ends (0: it is not known which). `is_newborn`: all that it has

@@ -64,7 +64,7 @@ bool ThreadExit::EndThreadsLostInExec(pid_t pid, EventTime when) {
     when.at = run_.turn.task()->reached;
   }
   EndThreadsOf(*of, first, when);
-  of->has_unmanaged_threads = false;
+  of->has_unregistered_threads = false;
   if (first == nullptr || !by_another) return true;
   of->ended.NoteChangedClocks();
   // The processor clock under its number is another thread's from now on.
@@ -119,8 +119,8 @@ void ThreadExit::Reap(Process& process) {
   const std::optional<int> status = WaitStatusOf(process.pid);
   if (!status.has_value()) return;  // its parent's to reap
   process.wait_status = *status;
-  // Of several threads the last may still be at what HeldThreads::LetDie says: those are reaped at
-  // the run's end, when nobody here is at a real-time priority any more.
+  // Of several threads the last may still be at what KernelBlockedThreads::LetDie says: those are
+  // reaped at the run's end, when nobody here is at a real-time priority any more.
   if (process.threads == 1) waitpid(process.pid, nullptr, WNOHANG);
   if (process.index == 0) {
     run_.report.exit_status = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);

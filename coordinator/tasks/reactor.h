@@ -22,7 +22,7 @@ enum class Tag : std::uint32_t {
   kConnection,
   kProcess,
   kAwaited,
-  kUnknownChild,
+  kUnregisteredChild,
   kTrap,
   kCommand,
   kNetwork,

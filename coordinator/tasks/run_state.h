@@ -47,8 +47,8 @@ struct RunState {
   VirtualTime end;
   // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
   VirtualTime latest;
-  VirtualDuration most_lead;           // of all programs' clocks
-  bool had_unmanaged_threads = false;  // some process, at some time
+  VirtualDuration most_lead;              // of all programs' clocks
+  bool had_unregistered_threads = false;  // some process, at some time
   // Threads that have made their last call, and that the kernel was not through with when they were
   // last looked at. What comes of their ends comes late to others then, and time waits for it.
   std::vector<pid_t> exiting;

@@ -123,7 +123,7 @@ struct Task : HostThread {
   std::int64_t settled_adjust_ns = 0;  // of its clock page, as the last turn ended
   bool is_cut_off = false;             // it has been told that its connection is not there any more
   UniqueFd cpu_clock_fd;               // where its CPU clock is read, if it is not its process's
-  int yields = 0;           // since it last looked whether unknown children wait for theirs
+  int yields = 0;           // since it last looked whether unregistered children wait for theirs
   bool owes_ahead = false;  // has computed ahead what it has not paid yet (computing_ahead.h),
   static constexpr int kComputes = 3;  // `used_up` of a thread that is expected to go on
   int ahead_after = kComputes;         // so it is sent to compute ahead once that is so much
@@ -239,7 +239,7 @@ struct Process {
   bool violates_protocol = false;           // killed, for what it has written into shared memory
   int threads = 1;                          // that ever attached
   DescriptorChanges changes;                // of its descriptors
-  bool has_unmanaged_threads = false;       // threads that never will
+  bool has_unregistered_threads = false;    // threads that never will
   bool is_client = false;                   // named in the scenario, rather than a child of one
   int wait_status = 0;                      // once dead, of the coordinator's own children
   std::optional<std::uint64_t> most_cpu_s;  // what it may compute at most (cpu_limit.h)

@@ -28,7 +28,7 @@ Json Answered() {
       "cores": [{"core": 0, "progress_ns": 1500000000, "next_thread": 11,
                  "next_ns": 1500000000, "first": true}],
       "processes": [{"pid": 10, "parent": 7, "client": "drone/controller", "is_client": true,
-        "name": "controller", "stopped": false, "unmanaged_threads": false, "clock_lead_ns": 0,
+        "name": "controller", "stopped": false, "unregistered_threads": false, "clock_lead_ns": 0,
         "timers": [{"id": 16, "clock": "time", "next_ns": 1510000000, "interval_ns": 10000000,
                     "signal": 14}],
         "threads": [{"tid": 11, "state": "waiting", "text": "waits for a lock or a condition",
@@ -39,7 +39,7 @@ Json Answered() {
           "kernel": {"name": "wor\u001bker", "state": "S", "cpu": 1, "processor_ns": 10000000,
                      "in": "futex_wait_queue", "call": 202}}]}]}],
     "queues": {"futexes": [{"process": 10, "file": 0, "address": 4096, "waiters": [11]}],
-               "kernel_objects": [], "dds": [], "network_next_ns": null, "unknown_children": []}
+               "kernel_objects": [], "dds": [], "network_next_ns": null, "unregistered_children": []}
   })");
 }
 

@@ -47,9 +47,9 @@ class StandstillWatchTest : public testing::Test {
   Robot robot_{"robot", 1.0, RobotScheduler(1, true, [](int) { return RobotScheduler::Wait{}; })};
   RunState run_{Scenario{}, Telling(), false};
   Reactor reactor_;
-  UnmanagedThreads unmanaged_{run_};
-  UnknownChildren unknown_children_{run_.table, reactor_, unmanaged_};
-  StandstillWatch watch_{run_, unmanaged_, unknown_children_};
+  UnregisteredThreads unregistered_{run_};
+  UnregisteredChildren unregistered_children_{run_.table, reactor_, unregistered_};
+  StandstillWatch watch_{run_, unregistered_, unregistered_children_};
 };
 
 TEST_F(StandstillWatchTest, SaysOnceWhatIsWaitedForWhenPatienceIsOver) {

@@ -38,9 +38,9 @@ class GraceTest : public testing::Test {
   Robot& robot_ = run_.robots.emplace_back(
       "robot", 1.0, RobotScheduler(1, true, [](int) { return RobotScheduler::Wait{}; }));
   Reactor reactor_;
-  UnmanagedThreads unmanaged_{run_};
-  UnknownChildren unknown_children_{run_.table, reactor_, unmanaged_};
-  Grace grace_{run_, reactor_, unknown_children_, [](EventTime) {}};
+  UnregisteredThreads unregistered_{run_};
+  UnregisteredChildren unregistered_children_{run_.table, reactor_, unregistered_};
+  Grace grace_{run_, reactor_, unregistered_children_, [](EventTime) {}};
 };
 
 TEST_F(GraceTest, TheRunGoesOnFromOneClientsKillToTheNextOnes) {

@@ -19,13 +19,13 @@
 
 namespace tcs {
 
-class UnmanagedThreads {
+class UnregisteredThreads {
  public:
-  explicit UnmanagedThreads(RunState& run) : run_(run) {}
+  explicit UnregisteredThreads(RunState& run) : run_(run) {}
 
   // The dispatched thread has not had the host's processor `cpu` for a while. Others of the host
-  // may have it, too: so an unmanaged thread loses its level only if it has computed since the look
-  // before, in this dispatch. The threads of `detector` are tcsim's own.
+  // may have it, too: so an unregistered thread loses its level only if it has computed since the
+  // look before, in this dispatch. The threads of `detector` are tcsim's own.
   void LowerThoseThatCompute(int cpu, pid_t detector);
   // It loses its level at once.
   void Lower(pid_t tid);

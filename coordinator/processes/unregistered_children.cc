@@ -1,4 +1,4 @@
-#include "coordinator/processes/unknown_children.h"
+#include "coordinator/processes/unregistered_children.h"
 
 #include <sys/epoll.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@ constexpr HostDuration kTurn = HostDuration::Milliseconds(1);
 
 }  // namespace
 
-void UnknownChildren::LookFor(const Process& parent) {
+void UnregisteredChildren::LookFor(const Process& parent) {
   std::erase_if(untaken_, [](pid_t pid) { return ThreadState(pid) != 'Z'; });
   for (const pid_t pid : ChildrenOf(parent.pid)) {
     if (living_.contains(pid) || untaken_.contains(pid)) continue;
@@ -28,12 +28,12 @@ void UnknownChildren::LookFor(const Process& parent) {
     if (known || table_.IsBroker(pid)) continue;
     UniqueFd pidfd(OpenPidfd(pid));
     if (!pidfd) continue;
-    reactor_.Add(pidfd.get(), EPOLLIN, {Tag::kUnknownChild, static_cast<std::uint32_t>(pid)});
+    reactor_.Add(pidfd.get(), EPOLLIN, {Tag::kUnregisteredChild, static_cast<std::uint32_t>(pid)});
     living_[pid] = {parent.pid, std::move(pidfd)};
   }
 }
 
-Process* UnknownChildren::Ended(pid_t pid) {
+Process* UnregisteredChildren::Ended(pid_t pid) {
   const auto found = living_.find(pid);
   if (found == living_.end()) return nullptr;
   const Child child = std::move(found->second);
@@ -44,26 +44,26 @@ Process* UnknownChildren::Ended(pid_t pid) {
   return table_.LivingProcess(child.parent);
 }
 
-bool UnknownChildren::LetRunBeside(const Process& parent) {
+bool UnregisteredChildren::LetRunBeside(const Process& parent) {
   LookFor(parent);
   if (!AnyRuns()) return false;
   Pause(kTurn);
   return true;
 }
 
-bool UnknownChildren::AreOf(const Process& parent) const {
+bool UnregisteredChildren::AreOf(const Process& parent) const {
   return std::any_of(living_.begin(), living_.end(),
                      [&](const auto& child) { return child.second.parent == parent.pid; });
 }
 
-bool UnknownChildren::AnyCounts() const {
+bool UnregisteredChildren::AnyCounts() const {
   return std::any_of(living_.begin(), living_.end(),
-                     [this](const auto& child) { return !unmanaged_.IsAstray(child.first); });
+                     [this](const auto& child) { return !unregistered_.IsAstray(child.first); });
 }
 
-bool UnknownChildren::AnyRuns() const {
+bool UnregisteredChildren::AnyRuns() const {
   return std::any_of(living_.begin(), living_.end(), [&](const auto& child) {
-    if (table_.Living(child.first) != nullptr || unmanaged_.IsAstray(child.first)) return false;
+    if (table_.Living(child.first) != nullptr || unregistered_.IsAstray(child.first)) return false;
     const char state = ThreadState(child.first);
     return state == 'R' || state == 'D';
   });

@@ -9,9 +9,9 @@
 
 namespace tcs {
 
-class HeldThreads {
+class KernelBlockedThreads {
  public:
-  HeldThreads(RunState& run, HostCpu& cpu) : run_(run), cpu_(cpu) {}
+  KernelBlockedThreads(RunState& run, HostCpu& cpu) : run_(run), cpu_(cpu) {}
 
   // The running thread may wait in the kernel for what another one had there when it was preempted:
   // the map of their process's memory, say. That other thread has to finish, and it cannot be seen

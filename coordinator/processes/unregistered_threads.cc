@@ -1,4 +1,4 @@
-#include "coordinator/processes/unmanaged_threads.h"
+#include "coordinator/processes/unregistered_threads.h"
 
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -28,7 +28,7 @@ bool IsOwnThread(pid_t tid) { return syscall(SYS_tgkill, getpid(), tid, 0) == 0;
 
 }  // namespace
 
-void UnmanagedThreads::LowerThoseThatCompute(int cpu, pid_t detector) {
+void UnregisteredThreads::LowerThoseThatCompute(int cpu, pid_t detector) {
   const std::map<pid_t, std::int64_t> before = std::exchange(seen_used_ns_, {});
   const std::int64_t dispatch = run_.report.switches;
   const bool is_first = std::exchange(seen_dispatch_, dispatch) != dispatch;
@@ -44,7 +44,7 @@ void UnmanagedThreads::LowerThoseThatCompute(int cpu, pid_t detector) {
   }
 }
 
-void UnmanagedThreads::Lower(pid_t tid) {
+void UnregisteredThreads::Lower(pid_t tid) {
   LeaveRealTime(tid);
   lowered_[tid] = ClockOf(tid) + kCountsNs;
   const Process* process = run_.table.LivingProcess(ProcessOfThread(tid));
@@ -55,21 +55,21 @@ void UnmanagedThreads::Lower(pid_t tid) {
       "any more, and gets what others leave");
 }
 
-bool UnmanagedThreads::NeverRegisters(Task& task) {
+bool UnregisteredThreads::NeverRegisters(Task& task) {
   return task.process->link != nullptr && HostClockOf(task) > kCountsNs;
 }
 
-bool UnmanagedThreads::IsAstray(pid_t tid) const {
+bool UnregisteredThreads::IsAstray(pid_t tid) const {
   const auto found = lowered_.find(tid);
   if (found == lowered_.end()) return false;
   const std::int64_t used_ns = ClockOf(tid);
   return used_ns < 0 || used_ns > found->second;
 }
 
-bool UnmanagedThreads::AnyRuns() const {
-  if (!run_.had_unmanaged_threads) return false;
+bool UnregisteredThreads::AnyRuns() const {
+  if (!run_.had_unregistered_threads) return false;
   for (const Process& process : run_.table.processes()) {
-    if (!process.has_unmanaged_threads || process.dead) continue;
+    if (!process.has_unregistered_threads || process.dead) continue;
     for (const pid_t tid : ThreadsOf(process.pid)) {
       if (run_.table.Living(tid) != nullptr || IsAstray(tid)) continue;
       if (const char state = ThreadState(tid); state == 'R' || state == 'D') return true;
@@ -78,7 +78,7 @@ bool UnmanagedThreads::AnyRuns() const {
   return false;
 }
 
-std::string UnmanagedThreads::NameOfMakerOf(pid_t tid) const {
+std::string UnregisteredThreads::NameOfMakerOf(pid_t tid) const {
   const Process* maker = run_.table.LivingProcess(ParentOf(ProcessOfThread(tid)));
   return maker == nullptr ? "a program of the run" : maker->name;
 }

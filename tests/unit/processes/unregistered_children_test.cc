@@ -1,4 +1,4 @@
-#include "coordinator/processes/unknown_children.h"
+#include "coordinator/processes/unregistered_children.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -11,14 +11,14 @@ namespace tcs {
 namespace {
 
 // This process is the parent, and has a child that waits for ever.
-class UnknownChildrenTest : public testing::Test {
+class UnregisteredChildrenTest : public testing::Test {
  protected:
   void SetUp() override {
     child_ = fork();
     if (child_ == 0) {
       for (;;) pause();
     }
-    reactor_.On(Tag::kUnknownChild, [this](const Subject& child, std::uint32_t, EventTime) {
+    reactor_.On(Tag::kUnregisteredChild, [this](const Subject& child, std::uint32_t, EventTime) {
       ended_.push_back(static_cast<pid_t>(child.index));
       parents_.push_back(children_.Ended(ended_.back()));
       return PollOutcome{};
@@ -37,14 +37,14 @@ class UnknownChildrenTest : public testing::Test {
   pid_t child_ = -1;
   RunState run_{Scenario{}, RunOptions{}, false};
   Reactor reactor_;
-  UnmanagedThreads unmanaged_{run_};
-  UnknownChildren children_{run_.table, reactor_, unmanaged_};
+  UnregisteredThreads unregistered_{run_};
+  UnregisteredChildren children_{run_.table, reactor_, unregistered_};
   std::vector<pid_t> ended_;
   std::vector<Process*> parents_;
   Process* parent_ = nullptr;
 };
 
-TEST_F(UnknownChildrenTest, AChildThatNobodyAnnouncedIsFoundAndItsEndSeen) {
+TEST_F(UnregisteredChildrenTest, AChildThatNobodyAnnouncedIsFoundAndItsEndSeen) {
   EXPECT_FALSE(children_.AnyCounts());
   children_.LookFor(*parent_);
   EXPECT_TRUE(children_.living().contains(child_));
@@ -56,14 +56,14 @@ TEST_F(UnknownChildrenTest, AChildThatNobodyAnnouncedIsFoundAndItsEndSeen) {
   EXPECT_FALSE(children_.AreOf(*parent_));
 }
 
-TEST_F(UnknownChildrenTest, OneThatHasEndedAndWasNotWaitedForIsNotFoundAgain) {
+TEST_F(UnregisteredChildrenTest, OneThatHasEndedAndWasNotWaitedForIsNotFoundAgain) {
   children_.LookFor(*parent_);
   EndChild();
   children_.LookFor(*parent_);
   EXPECT_TRUE(children_.living().empty());
 }
 
-TEST_F(UnknownChildrenTest, AnnouncedOnesAreNone) {
+TEST_F(UnregisteredChildrenTest, AnnouncedOnesAreNone) {
   run_.table.AddProcess(child_);
   children_.LookFor(*parent_);
   EXPECT_TRUE(children_.living().empty());

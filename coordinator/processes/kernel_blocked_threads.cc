@@ -1,4 +1,4 @@
-#include "coordinator/processes/held_threads.h"
+#include "coordinator/processes/kernel_blocked_threads.h"
 
 #include <sys/types.h>
 
@@ -10,7 +10,7 @@
 
 namespace tcs {
 
-void HeldThreads::LendLevel() {
+void KernelBlockedThreads::LendLevel() {
   std::vector<Task*> own, others;
   for (Task& task : run_.table.tasks()) {
     if (run_.turn.IsOf(task) || task.parked || task.state == TaskState::kDead) continue;
@@ -24,14 +24,14 @@ void HeldThreads::LendLevel() {
   cpu_.active().Lend(*able[static_cast<std::size_t>(run_.turn.held_looks) % able.size()]);
 }
 
-void HeldThreads::LetDie(const Process& process) {
+void KernelBlockedThreads::LetDie(const Process& process) {
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->may_run || !IsDying(task->tid)) continue;
     cpu_.active().LetRun(*task);
   }
 }
 
-bool HeldThreads::HasExited(const Task& task) {
+bool KernelBlockedThreads::HasExited(const Task& task) {
   const std::vector<pid_t> threads = ThreadsOf(task.process->pid);
   return std::any_of(threads.begin(), threads.end(),
                      [&](pid_t tid) { return tid != task.tid && !IsDying(tid); });

@@ -3,7 +3,7 @@
 // their end, and virtual time waits while they run.
 //
 // For the coordinator's thread only. Reads /proc, and has the reactor watch for their ends
-// (Tag::kUnknownChild, with their numbers).
+// (Tag::kUnregisteredChild, with their numbers).
 #pragma once
 
 #include <sys/types.h>
@@ -12,13 +12,13 @@
 #include <set>
 
 #include "coordinator/port/unique_fd.h"
-#include "coordinator/processes/unmanaged_threads.h"
+#include "coordinator/processes/unregistered_threads.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/task_table.h"
 
 namespace tcs {
 
-class UnknownChildren {
+class UnregisteredChildren {
  public:
   // A child that was not announced and has not registered, perhaps never will.
   struct Child {
@@ -26,8 +26,8 @@ class UnknownChildren {
     UniqueFd pidfd;
   };
 
-  UnknownChildren(TaskTable& table, Reactor& reactor, const UnmanagedThreads& unmanaged)
-      : table_(table), reactor_(reactor), unmanaged_(unmanaged) {}
+  UnregisteredChildren(TaskTable& table, Reactor& reactor, const UnregisteredThreads& unregistered)
+      : table_(table), reactor_(reactor), unregistered_(unregistered) {}
 
   // When a thread of the parent comes to wait for its children.
   void LookFor(const Process& parent);
@@ -50,7 +50,7 @@ class UnknownChildren {
  private:
   TaskTable& table_;
   Reactor& reactor_;
-  const UnmanagedThreads& unmanaged_;
+  const UnregisteredThreads& unregistered_;
   std::map<pid_t, Child> living_;
   std::set<pid_t> untaken_;  // children that have ended, and were not waited for yet
 };
