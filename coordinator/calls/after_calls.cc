@@ -1,6 +1,6 @@
 #include "coordinator/calls/after_calls.h"
 
-#include "coordinator/calls/raw_ipc.h"
+#include "coordinator/calls/syscall_ipc.h"
 
 namespace tcs {
 
@@ -30,7 +30,7 @@ void AfterCalls::Do(Task& task, EventTime call, bool last) {
       break;
     case AfterCall::kObjects: {
       objects_.LookAtKernelWaits(call);
-      const KernelObject object = RawIpc::ObjectOf(task.trapped_call);
+      const KernelObject object = SyscallIpc::ObjectOf(task.trapped_call);
       objects_.Wake(object.kind, object.id, call);
       break;
     }

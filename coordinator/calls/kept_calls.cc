@@ -6,7 +6,7 @@
 
 #include "coordinator/calls/call_files.h"
 #include "coordinator/calls/kept_transfers.h"
-#include "coordinator/calls/raw_polls.h"
+#include "coordinator/calls/syscall_polls.h"
 #include "coordinator/os/open_files.h"
 
 namespace tcs {
@@ -16,7 +16,7 @@ namespace {
 bool HasTimedOut(const Task& task) { return task.reason == shm::WakeReason::kDeadline; }
 
 std::int64_t PollAgain(const Task& task, const TrappedCall& call) {
-  const std::int64_t found = RawPolls::Again(task, call, task.kept->files.front().get());
+  const std::int64_t found = SyscallPolls::Again(task, call, task.kept->files.front().get());
   return found == 0 && !HasTimedOut(task) ? -EAGAIN : found;
 }
 
@@ -28,7 +28,8 @@ bool KeptCalls::WaitsAgain(Task& task) {
   const bool transfers = task.kept->transfers;
   CallFiles::LookAtNumbers(task);
   if (!task.kept.has_value()) {
-    if (!transfers && !task.trap_continues && HasTimedOut(task)) RawPolls::ClearResult(task, call);
+    if (!transfers && !task.trap_continues && HasTimedOut(task))
+      SyscallPolls::ClearResult(task, call);
     return false;
   }
   // A transfer that has timed out is over, and has its result.

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "coordinator/calls/call_files.h"
-#include "coordinator/calls/raw_semaphores.h"
+#include "coordinator/calls/syscall_semaphores.h"
 #include "coordinator/port/proc_files.h"
 
 namespace tcs {

@@ -22,7 +22,7 @@ bool TrappedCalls::Handle(Task& task, const TrappedCall& call) {
   if (call.number == SYS_futex) {
     futexes_.Handle(task, call);
   } else {
-    looks_again = raw_.Handle(task, call);
+    looks_again = syscalls_.Handle(task, call);
   }
   if (task.slot >= 0) {
     SlotOf(task).waits_in_call.store(task.state == TaskState::kWaiting ? 1 : 0);

@@ -6,8 +6,8 @@
 #include "coordinator/calls/futex_calls.h"
 #include "coordinator/calls/guarded_calls.h"
 #include "coordinator/calls/local_sockets.h"
-#include "coordinator/calls/raw_calls.h"
 #include "coordinator/calls/spawns.h"
+#include "coordinator/calls/syscalls.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/port/traps.h"
 #include "coordinator/processes/thread_exit.h"
@@ -18,13 +18,13 @@ namespace tcs {
 
 class TrappedCalls {
  public:
-  TrappedCalls(RunState& run, Waker& waker, FutexCalls& futexes, RawCalls& raw,
+  TrappedCalls(RunState& run, Waker& waker, FutexCalls& futexes, Syscalls& syscalls,
                const GuardedCalls& guard, ThreadExit& thread_exit, Executor& executor,
                LocalSockets& local_sockets, Spawns& spawns)
       : run_(run),
         waker_(waker),
         futexes_(futexes),
-        raw_(raw),
+        syscalls_(syscalls),
         guard_(guard),
         thread_exit_(thread_exit),
         executor_(executor),
@@ -45,7 +45,7 @@ class TrappedCalls {
   RunState& run_;
   Waker& waker_;
   FutexCalls& futexes_;
-  RawCalls& raw_;
+  Syscalls& syscalls_;
   const GuardedCalls& guard_;
   ThreadExit& thread_exit_;
   Executor& executor_;

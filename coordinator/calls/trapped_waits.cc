@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "coordinator/calls/call_files.h"
-#include "coordinator/calls/raw_ipc.h"
-#include "coordinator/calls/raw_polls.h"
-#include "coordinator/calls/raw_semaphores.h"
-#include "coordinator/calls/raw_transfers.h"
+#include "coordinator/calls/syscall_ipc.h"
+#include "coordinator/calls/syscall_polls.h"
+#include "coordinator/calls/syscall_semaphores.h"
+#include "coordinator/calls/syscall_transfers.h"
 #include "coordinator/tasks/client_values.h"
 
 namespace tcs {
@@ -57,20 +57,20 @@ void TrappedWaits::Finish(Task& task, shm::WakeReason reason) {
   if (timed_out &&
       (task.Awaits<awaited::Queue>() != nullptr || task.Awaits<awaited::Signals>() != nullptr)) {
     task.trap_continues = false;
-    task.trap_result = RawIpc::ResultAtDeadline(task.trapped_call);
+    task.trap_result = SyscallIpc::ResultAtDeadline(task.trapped_call);
   }
   const auto* watched = task.Awaits<awaited::Descriptors>();
   if (watched == nullptr) return;
   if (!timed_out) {
-    if (watched->transfers && RawTransfers::Receives(task.trapped_call))
+    if (watched->transfers && SyscallTransfers::Receives(task.trapped_call))
       activations_.ReceivedRaw(task, false);
     return;
   }
   task.trap_continues = false;
   if (watched->transfers) {
-    task.trap_result = RawIpc::ResultAtDeadline(task.trapped_call);
+    task.trap_result = SyscallIpc::ResultAtDeadline(task.trapped_call);
   } else if (!CallFiles::Keeps(task, *watched)) {  // which are looked at once more
-    RawPolls::ClearResult(task, task.trapped_call);
+    SyscallPolls::ClearResult(task, task.trapped_call);
   }
 }
 

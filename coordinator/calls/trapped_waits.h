@@ -4,7 +4,7 @@
 #pragma once
 
 #include "coordinator/calls/futex_words.h"
-#include "coordinator/calls/raw_child_waits.h"
+#include "coordinator/calls/syscall_child_waits.h"
 #include "coordinator/tasks/activations.h"
 #include "coordinator/tasks/task.h"
 #include "shm/layout.h"
@@ -13,7 +13,7 @@ namespace tcs {
 
 class TrappedWaits {
  public:
-  TrappedWaits(FutexWords& words, RawChildWaits& children, Activations& activations)
+  TrappedWaits(FutexWords& words, SyscallChildWaits& children, Activations& activations)
       : words_(words), children_(children), activations_(activations) {}
 
   // The call goes on, for that reason; the thread's wait is still there.
@@ -23,7 +23,7 @@ class TrappedWaits {
   void Interrupt(Task& task);
 
   FutexWords& words_;
-  RawChildWaits& children_;
+  SyscallChildWaits& children_;
   Activations& activations_;
 };
 

@@ -22,19 +22,19 @@
 #include "coordinator/calls/outside_waits.h"
 #include "coordinator/calls/posted_datagrams.h"
 #include "coordinator/calls/priority_inheritance.h"
-#include "coordinator/calls/raw_calls.h"
-#include "coordinator/calls/raw_child_waits.h"
-#include "coordinator/calls/raw_draws.h"
-#include "coordinator/calls/raw_polls.h"
-#include "coordinator/calls/raw_scheduling.h"
-#include "coordinator/calls/raw_timers.h"
-#include "coordinator/calls/raw_times.h"
-#include "coordinator/calls/raw_transfers.h"
 #include "coordinator/calls/scheduling_calls.h"
 #include "coordinator/calls/shared_events.h"
 #include "coordinator/calls/signal_calls.h"
 #include "coordinator/calls/signal_wakes.h"
 #include "coordinator/calls/spawns.h"
+#include "coordinator/calls/syscall_child_waits.h"
+#include "coordinator/calls/syscall_draws.h"
+#include "coordinator/calls/syscall_polls.h"
+#include "coordinator/calls/syscall_scheduling.h"
+#include "coordinator/calls/syscall_timers.h"
+#include "coordinator/calls/syscall_times.h"
+#include "coordinator/calls/syscall_transfers.h"
+#include "coordinator/calls/syscalls.h"
 #include "coordinator/calls/timer_calls.h"
 #include "coordinator/calls/timer_signals.h"
 #include "coordinator/calls/trapped_calls.h"
@@ -141,7 +141,7 @@ struct Wiring {
   PriorityInheritance inheritance{run, waker};
   DdsGateway dds{run, waker, world, inheritance};
   SchedulingCalls scheduling{run, waker, inheritance};
-  RawScheduling raw_scheduling{run, scheduling};
+  SyscallScheduling syscall_scheduling{run, scheduling};
   FutexWords words{run, waker};
   LockFutexes locks{run, waker, words, inheritance};
   FutexCalls futexes{run, waker, words, locks,
@@ -154,7 +154,7 @@ struct Wiring {
       }};
   TimerSignals timer_signals{run, waker, signal_wakes};
   TimerCalls timers{run, waker, timer_signals};
-  RawTimers raw_timers{run, timers};
+  SyscallTimers syscall_timers{run, timers};
   Peers peers{run};
   OutsideWaits outside{run, reactor, peers, [this] { return pacing.RunningTime(); }};
   DescriptorWaits descriptors{reactor, outside};
@@ -198,24 +198,25 @@ struct Wiring {
                  unregistered_children, unregistered}};
 
   // Calls that are made raw.
-  RawTimes raw_times{run, waker, dates};
-  RawUsage raw_usage{run};
+  SyscallTimes syscall_times{run, waker, dates};
+  SyscallUsage syscall_usage{run};
   ComputerFiles computer_files{run};
-  RawLimits raw_limits{run};
-  RawPolls raw_polls{waker, descriptors};
-  RawDraws raw_draws{run};
-  RawTransfers raw_transfers{run,        waker,         activations, descriptors,
-                             raw_timers, local_sockets, raw_draws,   outside};
-  RawChildWaits raw_child_waits{run, waker, unregistered_children};
-  RawIpc raw_ipc{run, waker, activations, objects, descriptors};
-  RawCalls raw_calls{run,
-                     waker,
-                     {raw_times, raw_usage, raw_timers, raw_polls, raw_transfers, raw_child_waits,
-                      raw_scheduling, raw_ipc, words, local_sockets, computer_files, raw_limits},
-                     [this](Task& task) { return notifications.Yield(task); },
-                     [this](Task& task, const TrappedCall& call) { trapped.Exit(task, call); }};
-  TrappedWaits trapped_waits{words, raw_child_waits, activations};
-  TrappedCalls trapped{run,         waker,     futexes,       raw_calls, guard,
+  SyscallLimits syscall_limits{run};
+  SyscallPolls syscall_polls{waker, descriptors};
+  SyscallDraws syscall_draws{run};
+  SyscallTransfers syscall_transfers{
+      run, waker, activations, descriptors, syscall_timers, local_sockets, syscall_draws, outside};
+  SyscallChildWaits syscall_child_waits{run, waker, unregistered_children};
+  SyscallIpc syscall_ipc{run, waker, activations, objects, descriptors};
+  Syscalls syscalls{run,
+                    waker,
+                    {syscall_times, syscall_usage, syscall_timers, syscall_polls, syscall_transfers,
+                     syscall_child_waits, syscall_scheduling, syscall_ipc, words, local_sockets,
+                     computer_files, syscall_limits},
+                    [this](Task& task) { return notifications.Yield(task); },
+                    [this](Task& task, const TrappedCall& call) { trapped.Exit(task, call); }};
+  TrappedWaits trapped_waits{words, syscall_child_waits, activations};
+  TrappedCalls trapped{run,         waker,     futexes,       syscalls, guard,
                        thread_exit, *executor, local_sockets, spawns};
   KeptCalls kept_calls{waker, descriptors};
   AfterCalls after_calls{run, objects, shared_events, signals, signal_wakes, spawns};

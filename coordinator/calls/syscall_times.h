@@ -12,9 +12,9 @@
 
 namespace tcs {
 
-class RawTimes {
+class SyscallTimes {
  public:
-  RawTimes(RunState& run, Waker& waker, DateCalls& dates)
+  SyscallTimes(RunState& run, Waker& waker, DateCalls& dates)
       : run_(run), waker_(waker), dates_(dates) {}
 
   std::int64_t ReadClock(const Task& task, const TrappedCall& call) const;

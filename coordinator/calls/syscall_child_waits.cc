@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_child_waits.h"
+#include "coordinator/calls/syscall_child_waits.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -38,13 +38,13 @@ ProcessDescriptor DescriptorOf(pid_t tid, int number) {
 
 }  // namespace
 
-void RawChildWaits::ForgetNews(const Process& parent) {
+void SyscallChildWaits::ForgetNews(const Process& parent) {
   for (Process& child : run_.table.processes()) {
     if (child.parent == parent.pid) child.stop_is_news = child.continue_is_news = false;
   }
 }
 
-void RawChildWaits::Await(Task& task, const TrappedCall& call) {
+void SyscallChildWaits::Await(Task& task, const TrappedCall& call) {
   const std::uint64_t options = call.args[call.number == SYS_wait4 ? 2 : 3];
   task.trap_continues = true;
   const bool stops = (options & (WUNTRACED | WCONTINUED)) != 0;

@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_scheduling.h"
+#include "coordinator/calls/syscall_scheduling.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -40,7 +40,7 @@ DeadlineParameters DeadlineOf(const Attributes& attributes) {
 
 }  // namespace
 
-std::int64_t RawScheduling::SetScheduling(Task& task, Task* of, const TrappedCall& call) {
+std::int64_t SyscallScheduling::SetScheduling(Task& task, Task* of, const TrappedCall& call) {
   const bool keeps = call.number == SYS_sched_setparam;
   sched_param param{};
   if (!Read(task, call.args[keeps ? 1 : 2], &param)) return -EFAULT;
@@ -52,7 +52,7 @@ std::int64_t RawScheduling::SetScheduling(Task& task, Task* of, const TrappedCal
   return calls_.SetPriority(task, *of, policy, param.sched_priority);
 }
 
-std::int64_t RawScheduling::SetAttributes(Task& task, Task& of, const TrappedCall& call) {
+std::int64_t SyscallScheduling::SetAttributes(Task& task, Task& of, const TrappedCall& call) {
   Attributes attributes;
   if (!Read(task, call.args[1], &attributes.size)) return -EFAULT;
   if (attributes.size == 0) attributes.size = kFirstAttributes;
@@ -75,7 +75,7 @@ std::int64_t RawScheduling::SetAttributes(Task& task, Task& of, const TrappedCal
   return calls_.Schedule(task, of, wanted);
 }
 
-std::int64_t RawScheduling::GetAttributes(Task& task, const Task& of, const TrappedCall& call) {
+std::int64_t SyscallScheduling::GetAttributes(Task& task, const Task& of, const TrappedCall& call) {
   const auto room = static_cast<std::uint32_t>(call.args[2]);
   if (room > kPageSize || room < kFirstAttributes || call.args[3] != 0) return -EINVAL;
   struct {
@@ -97,7 +97,7 @@ std::int64_t RawScheduling::GetAttributes(Task& task, const Task& of, const Trap
   return WriteMemory(task.process->pid, call.args[1], &answer, size) ? 0 : -EFAULT;
 }
 
-std::int64_t RawScheduling::GetScheduling(Task& task, Task& of, const TrappedCall& call) {
+std::int64_t SyscallScheduling::GetScheduling(Task& task, Task& of, const TrappedCall& call) {
   switch (call.number) {
     case SYS_sched_getscheduler:
       return ParametersOf(of).PolicyAndFlag();
@@ -121,13 +121,13 @@ std::int64_t RawScheduling::GetScheduling(Task& task, Task& of, const TrappedCal
   }
 }
 
-std::int64_t RawScheduling::CoreOf(const Task& task, const TrappedCall& call) {
+std::int64_t SyscallScheduling::CoreOf(const Task& task, const TrappedCall& call) {
   const std::uint32_t core = task.cpu == nullptr ? 0 : task.cpu->core, node = 0;
   if (call.args[0] != 0 && !Write(task, call.args[0], core)) return -EFAULT;
   return call.args[1] == 0 || Write(task, call.args[1], node) ? 0 : -EFAULT;
 }
 
-std::int64_t RawScheduling::Call(Task& task, const TrappedCall& call) {
+std::int64_t SyscallScheduling::Call(Task& task, const TrappedCall& call) {
   const auto tid = static_cast<pid_t>(call.args[0]);
   const bool has_pointer =
       call.number != SYS_sched_getscheduler && call.number != SYS_sched_setaffinity &&

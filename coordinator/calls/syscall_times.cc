@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_times.h"
+#include "coordinator/calls/syscall_times.h"
 
 #include <errno.h>
 #include <sys/syscall.h>
@@ -19,7 +19,7 @@ constexpr int kTimerAbsolute = 1;  // TIMER_ABSTIME
 
 }  // namespace
 
-std::int64_t RawTimes::ReadClock(const Task& task, const TrappedCall& call) const {
+std::int64_t SyscallTimes::ReadClock(const Task& task, const TrappedCall& call) const {
   const std::int64_t now = OwnNow(task).ns();
   const std::int64_t real = now + run_.OffsetOf(true);
   if (call.number == SYS_gettimeofday) {
@@ -37,7 +37,7 @@ std::int64_t RawTimes::ReadClock(const Task& task, const TrappedCall& call) cons
   return Write(task, call.args[1], ToTimespec(shown)) ? 0 : -EFAULT;
 }
 
-std::int64_t RawTimes::SetClock(Task& task, const TrappedCall& call) {
+std::int64_t SyscallTimes::SetClock(Task& task, const TrappedCall& call) {
   if (call.number == SYS_settimeofday) {
     if (call.args[1] != 0) return -EPERM;  // the time zone is the host's
     if (call.args[0] == 0) return 0;
@@ -53,7 +53,7 @@ std::int64_t RawTimes::SetClock(Task& task, const TrappedCall& call) {
 }
 
 // The host's clock is read for the program: it could change what is asked for meanwhile.
-std::int64_t RawTimes::Adjust(const Task& task, const TrappedCall& call) const {
+std::int64_t SyscallTimes::Adjust(const Task& task, const TrappedCall& call) const {
   timex state{};
   const std::uint64_t to = call.args[call.number == SYS_adjtimex ? 0 : 1];
   if (!tcs::Read(task, to, &state)) return -EFAULT;
@@ -64,7 +64,7 @@ std::int64_t RawTimes::Adjust(const Task& task, const TrappedCall& call) const {
   return Write(task, to, state) ? how : -EFAULT;
 }
 
-std::int64_t RawTimes::Sleep(Task& task, const TrappedCall& call) {
+std::int64_t SyscallTimes::Sleep(Task& task, const TrappedCall& call) {
   const bool plain = call.number == SYS_nanosleep;
   const clockid_t clock = plain ? CLOCK_MONOTONIC : static_cast<clockid_t>(call.args[0]);
   if (const int error = shm::ErrorOfSleepOn(clock, task.tid); error != 0) return -error;

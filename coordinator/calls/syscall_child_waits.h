@@ -10,9 +10,9 @@
 
 namespace tcs {
 
-class RawChildWaits {
+class SyscallChildWaits {
  public:
-  RawChildWaits(RunState& run, Waker& waker, UnregisteredChildren& unknown)
+  SyscallChildWaits(RunState& run, Waker& waker, UnregisteredChildren& unknown)
       : run_(run), waker_(waker), unknown_(unknown) {}
 
   // The thread waits, or the kernel has what the call asks for and carries it out.

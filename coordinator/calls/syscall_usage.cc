@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_usage.h"
+#include "coordinator/calls/syscall_usage.h"
 
 #include <errno.h>
 #include <sys/resource.h>
@@ -31,7 +31,7 @@ std::optional<std::int64_t> ChargedNs(const RunState& run, const Task& task,
 
 }  // namespace
 
-std::int64_t RawUsage::ReadClock(Task& task, const TrappedCall& call) const {
+std::int64_t SyscallUsage::ReadClock(Task& task, const TrappedCall& call) const {
   const shm::ClockOfId clock = shm::ClockOf(static_cast<clockid_t>(call.args[0]));
   const std::optional<std::int64_t> charged = ChargedNs(run_, task, clock);
   if (!charged.has_value()) {
@@ -41,7 +41,7 @@ std::int64_t RawUsage::ReadClock(Task& task, const TrappedCall& call) const {
   return Write(task, call.args[1], ToTimespec(*charged)) ? 0 : -EFAULT;
 }
 
-void RawUsage::Fill(const KernelUsage& counted, std::int64_t charged_ns, rusage& usage) const {
+void SyscallUsage::Fill(const KernelUsage& counted, std::int64_t charged_ns, rusage& usage) const {
   const std::int64_t ticks = counted.user_ticks + counted.system_ticks;
   const double user_part = run_.IsFixed() || ticks == 0 ? 1.0
                                                         : static_cast<double>(counted.user_ticks) /
@@ -56,7 +56,7 @@ void RawUsage::Fill(const KernelUsage& counted, std::int64_t charged_ns, rusage&
   usage.ru_nivcsw = counted.preemptions;
 }
 
-std::int64_t RawUsage::GetUsage(const Task& task, const TrappedCall& call) const {
+std::int64_t SyscallUsage::GetUsage(const Task& task, const TrappedCall& call) const {
   const pid_t pid = task.process->pid;
   rusage usage{};
   switch (static_cast<int>(call.args[0])) {
@@ -75,7 +75,7 @@ std::int64_t RawUsage::GetUsage(const Task& task, const TrappedCall& call) const
   return Write(task, call.args[1], usage) ? 0 : -EFAULT;
 }
 
-std::int64_t RawUsage::Times(const Task& task, const TrappedCall& call) const {
+std::int64_t SyscallUsage::Times(const Task& task, const TrappedCall& call) const {
   const std::int64_t tick = shm::kNsPerSecond / sysconf(_SC_CLK_TCK);
   const tms times{.tms_utime = UsageBook::ChargedTo(*task.process).ns() / tick,
                   .tms_stime = 0,
@@ -85,14 +85,14 @@ std::int64_t RawUsage::Times(const Task& task, const TrappedCall& call) const {
   return UptimeNs(task) / tick;
 }
 
-std::int64_t RawUsage::SystemInfo(const Task& task, const TrappedCall& call) const {
+std::int64_t SyscallUsage::SystemInfo(const Task& task, const TrappedCall& call) const {
   struct sysinfo info {};
   if (sysinfo(&info) != 0) return -errno;
   info.uptime = (UptimeNs(task) + shm::kNsPerSecond - 1) / shm::kNsPerSecond;  // as the kernel does
   return Write(task, call.args[0], info) ? 0 : -EFAULT;
 }
 
-std::int64_t RawUsage::UptimeNs(const Task& task) const {
+std::int64_t SyscallUsage::UptimeNs(const Task& task) const {
   return OwnNow(task).ns() + run_.header->monotonic_offset_ns;
 }
 

@@ -12,9 +12,9 @@
 
 namespace tcs {
 
-class RawScheduling {
+class SyscallScheduling {
  public:
-  RawScheduling(RunState& run, SchedulingCalls& calls) : run_(run), calls_(calls) {}
+  SyscallScheduling(RunState& run, SchedulingCalls& calls) : run_(run), calls_(calls) {}
 
   // What the call returns: negative for an errno.
   std::int64_t Call(Task& task, const TrappedCall& call);

@@ -14,14 +14,14 @@
 
 namespace tcs {
 
-class RawTimers {
+class SyscallTimers {
  public:
   struct Found {
     Process* owner = nullptr;
     std::int64_t id = 0;
   };
 
-  RawTimers(RunState& run, TimerCalls& calls) : run_(run), calls_(calls) {}
+  SyscallTimers(RunState& run, TimerCalls& calls) : run_(run), calls_(calls) {}
 
   // task.trap_result is what the call returns; or the kernel carries it out.
   void Call(Task& task, const TrappedCall& call);

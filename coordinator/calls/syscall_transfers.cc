@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_transfers.h"
+#include "coordinator/calls/syscall_transfers.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -131,9 +131,9 @@ bool AnswersAtOnce(const Task& task, const TrappedCall& call, const Borrowed& fd
 
 }  // namespace
 
-bool RawTransfers::Receives(const TrappedCall& call) { return TransferOf(call).reads; }
+bool SyscallTransfers::Receives(const TrappedCall& call) { return TransferOf(call).reads; }
 
-void RawTransfers::Handle(Task& task, const TrappedCall& call) {
+void SyscallTransfers::Handle(Task& task, const TrappedCall& call) {
   const Transfer transfer = TransferOf(call);
   const short events = transfer.reads ? POLLIN : POLLOUT;
   const auto number = static_cast<int>(call.args[0]);

@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_timers.h"
+#include "coordinator/calls/syscall_timers.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -55,7 +55,7 @@ int PosixKind(const Task& task, clockid_t id, const sigevent& event, shm::TimerK
 
 }  // namespace
 
-std::int64_t RawTimers::Create(Task& task, const TrappedCall& call) {
+std::int64_t SyscallTimers::Create(Task& task, const TrappedCall& call) {
   Process& process = *task.process;
   sigevent event{};
   event.sigev_signo = SIGALRM;
@@ -71,7 +71,7 @@ std::int64_t RawTimers::Create(Task& task, const TrappedCall& call) {
   return 0;
 }
 
-RawTimers::Found RawTimers::Find(const Task& task, int number) {
+SyscallTimers::Found SyscallTimers::Find(const Task& task, int number) {
   const Borrowed fd(task, number);
   if (fd.fd() < 0) return {};
   for (Process& process : run_.table.processes()) {
@@ -84,7 +84,7 @@ RawTimers::Found RawTimers::Find(const Task& task, int number) {
 }
 
 // One that was made by the call itself, which the kernel carries out, or that comes from elsewhere.
-RawTimers::Found RawTimers::Adopt(const Task& task, int number) {
+SyscallTimers::Found SyscallTimers::Adopt(const Task& task, int number) {
   Process& process = *task.process;
   UniqueFd fd = TimerCalls::DescriptorOf(process, number);
   if (!fd || process.timers.IsFull()) return {};
@@ -95,8 +95,8 @@ RawTimers::Found RawTimers::Adopt(const Task& task, int number) {
   return {&process, id};
 }
 
-std::int64_t RawTimers::NowOf(const Task& task, const Process& owner,
-                              const shm::TimerKind& kind) const {
+std::int64_t SyscallTimers::NowOf(const Task& task, const Process& owner,
+                                  const shm::TimerKind& kind) const {
   if (kind.clock == shm::TimerClock::kProcessCpu) return UsageBook::ChargedTo(owner).ns();
   if (kind.clock == shm::TimerClock::kTime) return owner.clock.At(task.reached).ns();
   const Task* known = run_.table.Living(kind.clock_tid);
@@ -105,8 +105,8 @@ std::int64_t RawTimers::NowOf(const Task& task, const Process& owner,
 
 // Sets it (first_ns 0: disarms it) and returns what it was set to: until the next expiry, and the
 // interval.
-itimerspec RawTimers::Exchange(Task& task, const Found& found, bool sets, std::int64_t first_ns,
-                               std::int64_t interval_ns, bool is_date) {
+itimerspec SyscallTimers::Exchange(Task& task, const Found& found, bool sets, std::int64_t first_ns,
+                                   std::int64_t interval_ns, bool is_date) {
   const std::int64_t now = NowOf(task, *found.owner, *found.owner->timers.KindOf(found.id));
   shm::Notification note{};
   note.kind = sets ? shm::NotificationKind::kTimerSet : shm::NotificationKind::kTimerGet;
@@ -119,7 +119,7 @@ itimerspec RawTimers::Exchange(Task& task, const Found& found, bool sets, std::i
   return {ToTimespec(std::exchange(task.reply[1], 0)), ToTimespec(shm::TimeLeft(next, now))};
 }
 
-std::int64_t RawTimers::Set(Task& task, const Found& found, const TrappedCall& call) {
+std::int64_t SyscallTimers::Set(Task& task, const Found& found, const TrappedCall& call) {
   itimerspec given{};
   if (!Read(task, call.args[2], &given)) return -EFAULT;
   if (!IsValid(given)) return -EINVAL;
@@ -135,7 +135,7 @@ std::int64_t RawTimers::Set(Task& task, const Found& found, const TrappedCall& c
   return call.args[3] == 0 || Write(task, call.args[3], before) ? 0 : -EFAULT;
 }
 
-std::int64_t RawTimers::IntervalTimer(Task& task, const TrappedCall& call) {
+std::int64_t SyscallTimers::IntervalTimer(Task& task, const TrappedCall& call) {
   const std::int64_t which =
       call.number == SYS_alarm ? ITIMER_REAL : static_cast<int>(call.args[0]);
   if (which < ITIMER_REAL || which > ITIMER_PROF) return -EINVAL;
@@ -159,7 +159,7 @@ std::int64_t RawTimers::IntervalTimer(Task& task, const TrappedCall& call) {
 }
 
 // Calls that name a timer of timer_create.
-std::int64_t RawTimers::PosixTimer(Task& task, const TrappedCall& call) {
+std::int64_t SyscallTimers::PosixTimer(Task& task, const TrappedCall& call) {
   const Found found{task.process, static_cast<int>(call.args[0])};
   ProcessTimers& timers = task.process->timers;
   const auto kind = timers.KindOf(found.id);
@@ -177,7 +177,7 @@ std::int64_t RawTimers::PosixTimer(Task& task, const TrappedCall& call) {
   }
 }
 
-void RawTimers::Call(Task& task, const TrappedCall& call) {
+void SyscallTimers::Call(Task& task, const TrappedCall& call) {
   switch (call.number) {
     case SYS_timer_create:
       task.trap_result = Create(task, call);

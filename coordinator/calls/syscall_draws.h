@@ -12,9 +12,9 @@
 
 namespace tcs {
 
-class RawDraws {
+class SyscallDraws {
  public:
-  explicit RawDraws(const RunState& run) : run_(run) {}
+  explicit SyscallDraws(const RunState& run) : run_(run) {}
 
   // getrandom, which is trapped under fixed accounting only. What the kernel would return.
   static std::int64_t GetRandom(Task& task, const TrappedCall& call);

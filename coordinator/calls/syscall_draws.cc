@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_draws.h"
+#include "coordinator/calls/syscall_draws.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -99,14 +99,14 @@ std::int64_t ReadUuid(Task& task, int fd, const std::vector<iovec>& buffers) {
 
 }  // namespace
 
-std::int64_t RawDraws::GetRandom(Task& task, const TrappedCall& call) {
+std::int64_t SyscallDraws::GetRandom(Task& task, const TrappedCall& call) {
   const auto flags = static_cast<unsigned>(call.args[2]);
   constexpr unsigned kSources = GRND_RANDOM | GRND_INSECURE;
   if ((flags & ~(kSources | GRND_NONBLOCK)) != 0 || (flags & kSources) == kSources) return -EINVAL;
   return ReadBytes(task, {{reinterpret_cast<void*>(call.args[0]), call.args[1]}});
 }
 
-bool RawDraws::Read(Task& task, const TrappedCall& call, const Borrowed& fd) const {
+bool SyscallDraws::Read(Task& task, const TrappedCall& call, const Borrowed& fd) const {
   if (!run_.IsFixed() || (call.number != SYS_read && call.number != SYS_readv)) return false;
   const Source source = SourceOf(fd.fd());
   if (source == Source::kNone || !fd.CanBeRead()) return false;

@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_semaphores.h"
+#include "coordinator/calls/syscall_semaphores.h"
 
 #include <sys/ipc.h>
 #include <sys/sem.h>

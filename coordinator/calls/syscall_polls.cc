@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_polls.h"
+#include "coordinator/calls/syscall_polls.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -93,7 +93,7 @@ bool IsSoundEpollWait(const Task& task, const TrappedCall& call) {
 
 }  // namespace
 
-std::int64_t RawPolls::Poll(Task& task, const TrappedCall& call) {
+std::int64_t SyscallPolls::Poll(Task& task, const TrappedCall& call) {
   std::int64_t timeout_ns = 0;
   task.trap_continues = true;
   // What is wrong with it the kernel says best.
@@ -122,7 +122,7 @@ std::int64_t RawPolls::Poll(Task& task, const TrappedCall& call) {
 }
 
 // The timeout of a call that waits for descriptors: false if it is not there, or not valid.
-bool RawPolls::TimeoutOf(Task& task, const TrappedCall& call, std::int64_t* ns) {
+bool SyscallPolls::TimeoutOf(Task& task, const TrappedCall& call, std::int64_t* ns) {
   const auto in_ms = [](std::uint64_t argument) {
     return shm::MillisecondsToNs(static_cast<int>(argument));
   };
@@ -157,7 +157,8 @@ bool RawPolls::TimeoutOf(Task& task, const TrappedCall& call, std::int64_t* ns) 
 }
 
 // What the call waits for; none where something is wrong with it, which the kernel says best.
-std::optional<std::vector<shm::WaitFd>> RawPolls::FdsOf(const Task& task, const TrappedCall& call) {
+std::optional<std::vector<shm::WaitFd>> SyscallPolls::FdsOf(const Task& task,
+                                                            const TrappedCall& call) {
   switch (call.number) {
     case SYS_poll:
     case SYS_ppoll:
@@ -173,7 +174,7 @@ std::optional<std::vector<shm::WaitFd>> RawPolls::FdsOf(const Task& task, const 
 
 // The mask that the call sets while it waits: none where there is something wrong with it. 0: it
 // sets none.
-std::optional<std::uint64_t> RawPolls::MaskOf(const Task& task, const TrappedCall& call) {
+std::optional<std::uint64_t> SyscallPolls::MaskOf(const Task& task, const TrappedCall& call) {
   std::uint64_t mask[2] = {0, sizeof(std::uint64_t)};  // where it is, and its size
   switch (call.number) {
     case SYS_ppoll:
@@ -198,7 +199,7 @@ std::optional<std::uint64_t> RawPolls::MaskOf(const Task& task, const TrappedCal
 
 // The signals that end the call though the thread blocks them: its mask lets them in. Those that do
 // nothing, or only stop the thread, do not.
-std::uint64_t RawPolls::SignalsOf(const Task& task, const TrappedCall& call) {
+std::uint64_t SyscallPolls::SignalsOf(const Task& task, const TrappedCall& call) {
   constexpr std::uint64_t kNoEnd = SignalBit(SIGCHLD) | SignalBit(SIGCONT) | SignalBit(SIGURG) |
                                    SignalBit(SIGWINCH) | SignalBit(SIGTSTP) | SignalBit(SIGTTIN) |
                                    SignalBit(SIGTTOU);
@@ -267,7 +268,7 @@ std::int64_t SelectByNumber(const Task& task, const TrappedCall& call) {
 
 }  // namespace
 
-std::int64_t RawPolls::Again(const Task& task, const TrappedCall& call, int file) {
+std::int64_t SyscallPolls::Again(const Task& task, const TrappedCall& call, int file) {
   if (!IsOfSet(call)) {
     const bool selects = call.number == SYS_select || call.number == SYS_pselect6;
     return selects ? SelectByNumber(task, call) : PollByNumber(task, call);
@@ -281,7 +282,7 @@ std::int64_t RawPolls::Again(const Task& task, const TrappedCall& call, int file
   return WriteMemory(task.process->pid, call.args[1], events, size) ? count : -EFAULT;
 }
 
-void RawPolls::ClearResult(const Task& task, const TrappedCall& call) {
+void SyscallPolls::ClearResult(const Task& task, const TrappedCall& call) {
   if (call.number == SYS_poll || call.number == SYS_ppoll) {
     const short none = 0;
     const std::size_t count = std::min<std::size_t>(call.args[1], kMostPolled);

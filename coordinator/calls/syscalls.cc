@@ -1,11 +1,11 @@
-#include "coordinator/calls/raw_calls.h"
+#include "coordinator/calls/syscalls.h"
 
 #include <errno.h>
 #include <sys/syscall.h>
 
-#include "coordinator/calls/raw_draws.h"
 #include "coordinator/calls/sent_signal.h"
 #include "coordinator/calls/signal_reach.h"
+#include "coordinator/calls/syscall_draws.h"
 #include "coordinator/os/landlock.h"
 #include "shm/clock_ids.h"
 
@@ -23,7 +23,7 @@ bool IsOfOwner(const TrappedCall& call) {
 
 // As the shim does it for those that it sees; and those that the C library makes for it inside come
 // here, too.
-void RawCalls::Signal(Task& task) {
+void Syscalls::Signal(Task& task) {
   task.trap_continues = true;
   if (OnlyAsks(task.trapped_call)) return;
   // The one call that the shim waits for; any other is a handler's, which interrupts it.
@@ -38,20 +38,20 @@ void RawCalls::Signal(Task& task) {
 
 // The kernel puts the mask in place, and ends the wait once a handler has run: at the virtual time
 // at which the signal was sent, as it does for all who wait.
-void RawCalls::Suspend(Task& task) {
+void Syscalls::Suspend(Task& task) {
   task.trap_continues = true;
   task.expects_kernel = true;
 }
 
 // The kernel keeps the order of those who wait for a lock.
-void RawCalls::Lock(Task& task) {
+void Syscalls::Lock(Task& task) {
   task.trap_continues = true;
   task.expects_kernel = true;
   task.after_call = AfterCall::kKernelWaits;
   waker_.HoldInCall(task, shm::NotificationKind::kWrite);
 }
 
-bool RawCalls::Handle(Task& task, const TrappedCall& call) {
+bool Syscalls::Handle(Task& task, const TrappedCall& call) {
   task.trapped_call = call;
   switch (call.number) {
     case SYS_clock_gettime:
@@ -148,7 +148,7 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
       task.trap_result = parts_.scheduling.Call(task, call);
       break;
     case SYS_getcpu:
-      task.trap_result = RawScheduling::CoreOf(task, call);
+      task.trap_result = SyscallScheduling::CoreOf(task, call);
       break;
     case SYS_timer_create:
     case SYS_timer_settime:
@@ -164,7 +164,7 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
       parts_.timers.Call(task, call);
       return true;  // it may have written to its descriptor
     case SYS_getrandom:
-      task.trap_result = RawDraws::GetRandom(task, call);
+      task.trap_result = SyscallDraws::GetRandom(task, call);
       break;
     case SYS_flock:
     case SYS_fcntl:

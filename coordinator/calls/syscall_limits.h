@@ -11,9 +11,9 @@
 
 namespace tcs {
 
-class RawLimits {
+class SyscallLimits {
  public:
-  explicit RawLimits(RunState& run) : run_(run) {}
+  explicit SyscallLimits(RunState& run) : run_(run) {}
 
   std::int64_t Call(Task& task, const TrappedCall& call) const;
 

@@ -14,9 +14,9 @@
 
 namespace tcs {
 
-class RawUsage {
+class SyscallUsage {
  public:
-  explicit RawUsage(RunState& run) : run_(run) {}
+  explicit SyscallUsage(RunState& run) : run_(run) {}
 
   // clock_gettime of a clock of processor time, the caller's or another's.
   std::int64_t ReadClock(Task& task, const TrappedCall& call) const;

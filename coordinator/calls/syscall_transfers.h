@@ -7,19 +7,19 @@
 #include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/outside_waits.h"
-#include "coordinator/calls/raw_draws.h"
-#include "coordinator/calls/raw_timers.h"
+#include "coordinator/calls/syscall_draws.h"
+#include "coordinator/calls/syscall_timers.h"
 #include "coordinator/port/traps.h"
 #include "coordinator/tasks/activations.h"
 #include "coordinator/tasks/waker.h"
 
 namespace tcs {
 
-class RawTransfers {
+class SyscallTransfers {
  public:
-  RawTransfers(RunState& run, Waker& waker, Activations& activations, DescriptorWaits& descriptors,
-               RawTimers& timers, LocalSockets& local_sockets, const RawDraws& draws,
-               OutsideWaits& outside)
+  SyscallTransfers(RunState& run, Waker& waker, Activations& activations,
+                   DescriptorWaits& descriptors, SyscallTimers& timers, LocalSockets& local_sockets,
+                   const SyscallDraws& draws, OutsideWaits& outside)
       : run_(run),
         waker_(waker),
         activations_(activations),
@@ -38,9 +38,9 @@ class RawTransfers {
   Waker& waker_;
   Activations& activations_;
   DescriptorWaits& descriptors_;
-  RawTimers& timers_;
+  SyscallTimers& timers_;
   LocalSockets& local_sockets_;
-  const RawDraws& draws_;
+  const SyscallDraws& draws_;
   OutsideWaits& outside_;
 };
 

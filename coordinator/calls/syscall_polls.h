@@ -15,9 +15,10 @@
 
 namespace tcs {
 
-class RawPolls {
+class SyscallPolls {
  public:
-  RawPolls(Waker& waker, DescriptorWaits& descriptors) : waker_(waker), descriptors_(descriptors) {}
+  SyscallPolls(Waker& waker, DescriptorWaits& descriptors)
+      : waker_(waker), descriptors_(descriptors) {}
 
   // What the call returns where the kernel does not carry it out.
   std::int64_t Poll(Task& task, const TrappedCall& call);

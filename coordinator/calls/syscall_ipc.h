@@ -13,10 +13,10 @@
 
 namespace tcs {
 
-class RawIpc {
+class SyscallIpc {
  public:
-  RawIpc(RunState& run, Waker& waker, Activations& activations, KernelObjectWaits& objects,
-         DescriptorWaits& descriptors)
+  SyscallIpc(RunState& run, Waker& waker, Activations& activations, KernelObjectWaits& objects,
+             DescriptorWaits& descriptors)
       : run_(run),
         waker_(waker),
         activations_(activations),

@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_ipc.h"
+#include "coordinator/calls/syscall_ipc.h"
 
 #include <errno.h>
 #include <mqueue.h>
@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/calls/raw_semaphores.h"
+#include "coordinator/calls/syscall_semaphores.h"
 #include "coordinator/os/signal_bits.h"
 #include "coordinator/tasks/borrowed.h"
 #include "coordinator/tasks/client_values.h"
@@ -32,19 +32,20 @@ bool IsRefused(const Borrowed& queue, const TrappedCall& call) {
 
 }  // namespace
 
-KernelObject RawIpc::ObjectOf(const TrappedCall& call) {
+KernelObject SyscallIpc::ObjectOf(const TrappedCall& call) {
   const bool is_queue =
       call.number == SYS_msgsnd || call.number == SYS_msgrcv || call.number == SYS_msgctl;
   const shm::WaitKey kind = is_queue ? shm::WaitKey::kMessages : shm::WaitKey::kSemaphores;
   return {.kind = static_cast<std::int64_t>(kind), .id = static_cast<int>(call.args[0])};
 }
 
-std::int64_t RawIpc::ResultAtDeadline(const TrappedCall& call) {
+std::int64_t SyscallIpc::ResultAtDeadline(const TrappedCall& call) {
   const bool is_queue = call.number == SYS_mq_timedsend || call.number == SYS_mq_timedreceive;
   return is_queue ? -ETIMEDOUT : -EAGAIN;
 }
 
-bool RawIpc::DeadlineAfter(const Task& task, std::uint64_t address, VirtualTime* deadline) const {
+bool SyscallIpc::DeadlineAfter(const Task& task, std::uint64_t address,
+                               VirtualTime* deadline) const {
   *deadline = VirtualTime::Never();
   if (address == 0) return true;
   timespec timeout{};
@@ -54,7 +55,7 @@ bool RawIpc::DeadlineAfter(const Task& task, std::uint64_t address, VirtualTime*
 }
 
 // Deadlines of queues are dates.
-bool RawIpc::DeadlineAt(const Task& task, std::uint64_t address, VirtualTime* deadline) const {
+bool SyscallIpc::DeadlineAt(const Task& task, std::uint64_t address, VirtualTime* deadline) const {
   *deadline = VirtualTime::Never();
   if (address == 0) return true;
   timespec date{};
@@ -64,7 +65,7 @@ bool RawIpc::DeadlineAt(const Task& task, std::uint64_t address, VirtualTime* de
   return true;
 }
 
-void RawIpc::OfSystemV(Task& task, const TrappedCall& call) {
+void SyscallIpc::OfSystemV(Task& task, const TrappedCall& call) {
   task.trap_continues = true;
   task.after_call = AfterCall::kObjects;
   VirtualTime deadline;
@@ -77,7 +78,7 @@ void RawIpc::OfSystemV(Task& task, const TrappedCall& call) {
   waker_.HoldInCall(task, shm::NotificationKind::kRead);
 }
 
-void RawIpc::Queue(Task& task, const TrappedCall& call) {
+void SyscallIpc::Queue(Task& task, const TrappedCall& call) {
   task.trap_continues = true;
   const bool sends = call.number == SYS_mq_timedsend;
   const short events = sends ? POLLOUT : POLLIN;
@@ -107,7 +108,7 @@ void RawIpc::Queue(Task& task, const TrappedCall& call) {
                      .is_date = true});
 }
 
-void RawIpc::AcceptSignal(Task& task, const TrappedCall& call) {
+void SyscallIpc::AcceptSignal(Task& task, const TrappedCall& call) {
   task.trap_continues = true;
   constexpr std::uint64_t kSetSize = 8;
   constexpr std::uint64_t kNeverAccepted = SignalBit(SIGKILL) | SignalBit(SIGSTOP);

@@ -1,4 +1,4 @@
-#include "coordinator/calls/raw_limits.h"
+#include "coordinator/calls/syscall_limits.h"
 
 #include <errno.h>
 #include <sys/syscall.h>
@@ -27,7 +27,7 @@ bool MayLookAt(const Credentials& caller, const Process& process) {
 
 }  // namespace
 
-std::int64_t RawLimits::Call(Task& task, const TrappedCall& call) const {
+std::int64_t SyscallLimits::Call(Task& task, const TrappedCall& call) const {
   Process* process = task.process;
   std::uint64_t given = 0, asked = 0;
   if (call.number == SYS_prlimit64) {

@@ -11,40 +11,40 @@
 #include "coordinator/calls/computer_files.h"
 #include "coordinator/calls/futex_words.h"
 #include "coordinator/calls/local_sockets.h"
-#include "coordinator/calls/raw_child_waits.h"
-#include "coordinator/calls/raw_ipc.h"
-#include "coordinator/calls/raw_limits.h"
-#include "coordinator/calls/raw_polls.h"
-#include "coordinator/calls/raw_scheduling.h"
-#include "coordinator/calls/raw_timers.h"
-#include "coordinator/calls/raw_times.h"
-#include "coordinator/calls/raw_transfers.h"
-#include "coordinator/calls/raw_usage.h"
 #include "coordinator/calls/spawns.h"
+#include "coordinator/calls/syscall_child_waits.h"
+#include "coordinator/calls/syscall_ipc.h"
+#include "coordinator/calls/syscall_limits.h"
+#include "coordinator/calls/syscall_polls.h"
+#include "coordinator/calls/syscall_scheduling.h"
+#include "coordinator/calls/syscall_timers.h"
+#include "coordinator/calls/syscall_times.h"
+#include "coordinator/calls/syscall_transfers.h"
+#include "coordinator/calls/syscall_usage.h"
 #include "coordinator/port/traps.h"
 #include "coordinator/tasks/waker.h"
 
 namespace tcs {
 
-class RawCalls {
+class Syscalls {
  public:
   struct Parts {
-    RawTimes& times;
-    RawUsage& usage;
-    RawTimers& timers;
-    RawPolls& polls;
-    RawTransfers& transfers;
-    RawChildWaits& children;
-    RawScheduling& scheduling;
-    RawIpc& ipc;
+    SyscallTimes& times;
+    SyscallUsage& usage;
+    SyscallTimers& timers;
+    SyscallPolls& polls;
+    SyscallTransfers& transfers;
+    SyscallChildWaits& children;
+    SyscallScheduling& scheduling;
+    SyscallIpc& ipc;
     FutexWords& words;
     LocalSockets& local_sockets;
     ComputerFiles& computer_files;
-    RawLimits& limits;
+    SyscallLimits& limits;
   };
 
   // `yield` lets equals have their turn (true: as Handle); `exit` ends the thread.
-  RawCalls(RunState& run, Waker& waker, Parts parts, std::function<bool(Task&)> yield,
+  Syscalls(RunState& run, Waker& waker, Parts parts, std::function<bool(Task&)> yield,
            std::function<void(Task&, const TrappedCall&)> exit)
       : run_(run), waker_(waker), parts_(parts), yield_(std::move(yield)), exit_(std::move(exit)) {}
 
