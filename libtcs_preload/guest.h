@@ -36,7 +36,7 @@ struct GuestThread {
   std::uint64_t told_dispatch = ~std::uint64_t{0};  // that began in an unseen call, and said so
   bool passes_on = false;                           // others wait for what it leaves (fd_wait.h)
   bool keeps_files = false;  // the coordinator, for the call that it is in (call_file.h)
-  bool posts = false;        // puts something into its postbox
+  bool posts = false;        // puts something into its command ring
   // Sockets, by their cookies, from which it may post (posting.cc); the next goes to this place.
   std::uint64_t posting_sockets[4] = {};
   std::uint32_t posting_socket = 0;

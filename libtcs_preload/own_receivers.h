@@ -12,9 +12,10 @@ namespace tcs::preload {
 // address, to where the socket is connected. kNoReceiver: programs may get it.
 int ReceiverOf(int fd, const void* address, socklen_t size);
 
-// Sends the message to the receiver without the kernel, through the thread's postbox
-// (shm/postbox.h), at the time that the thread's clock has shown. False, and nothing has happened:
-// the kernel has to carry this one. `result` is what the kernel would return: bytes, or -errno.
+// Sends the message to the receiver without the kernel, through the thread's command ring
+// (shm/command_ring.h), at the time that the thread's clock has shown. False, and nothing has
+// happened: the kernel has to carry this one. `result` is what the kernel would return: bytes, or
+// -errno.
 bool Post(GuestThread& thread, int fd, int receiver, const msghdr& message, int flags,
           long* result);
 

@@ -18,7 +18,7 @@
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
 #include "shm/clock_page.h"
-#include "shm/postbox.h"
+#include "shm/command_ring.h"
 
 namespace tcs::preload {
 
@@ -83,7 +83,7 @@ void Read(const msghdr& message, Parts* parts) {
   std::size_t size = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const iovec& part = parts->at[i];
-    if (part.iov_len > shm::Postbox::kMostSize || !CanRead(part.iov_base, part.iov_len)) return;
+    if (part.iov_len > shm::CommandRing::kMostSize || !CanRead(part.iov_base, part.iov_len)) return;
     size += part.iov_len;
   }
   parts->count = count;
@@ -106,7 +106,7 @@ void* Unreadable() {
 
 // What the kernel says of a send of so many bytes that it cannot read: -EFAULT if all else is well.
 long Try(int fd, const msghdr& message, std::size_t size, int flags) {
-  static_assert(shm::Postbox::kMostSize <= kPageSize);
+  static_assert(shm::CommandRing::kMostSize <= kPageSize);
   void* page = Unreadable();
   if (page == nullptr) return -EAGAIN;
   return RawSocketCall(SYS_sendto, fd, Arg(page), size, flags | MSG_DONTWAIT, Arg(message.msg_name),
@@ -115,14 +115,14 @@ long Try(int fd, const msghdr& message, std::size_t size, int flags) {
 
 void Put(GuestThread& thread, int receiver, const Parts& parts) {
   const shm::ClockPage& page = thread.slot->clock;
-  const shm::Postbox::Head head{
+  const shm::CommandRing::Head head{
       page.last_shown_ns.load(std::memory_order_relaxed), shm::RunTime(page, shm::ReadClock(page)),
       static_cast<std::uint32_t>(receiver), static_cast<std::uint32_t>(parts.size)};
-  shm::Postbox& box = thread.slot->postbox;
-  shm::PostInto(box, head, [&](std::uint64_t position) {
+  shm::CommandRing& ring = thread.slot->command_ring;
+  shm::PostInto(ring, head, [&](std::uint64_t position) {
     for (std::size_t i = 0; i < parts.count; ++i) {
       const iovec& part = parts.at[i];
-      shm::CopyIntoRing(box, position, part.iov_base, part.iov_len);
+      shm::CopyIntoRing(ring, position, part.iov_base, part.iov_len);
       position += part.iov_len;
     }
   });
@@ -147,7 +147,7 @@ bool Post(GuestThread& thread, int fd, int receiver, const msghdr& message, int 
   Parts parts;
   Read(message, &parts);
   const std::size_t size = parts.size;
-  if (!shm::HasRoomFor(thread.slot->postbox, size)) return false;
+  if (!shm::HasRoomFor(thread.slot->command_ring, size)) return false;
   if (!IsOfTheirKind(thread, fd, receivers.network)) return false;
   sa_family_t family;
   memcpy(&family, receivers.addresses[receiver].bytes, sizeof family);
@@ -158,7 +158,7 @@ bool Post(GuestThread& thread, int fd, int receiver, const msghdr& message, int 
   thread.posts = true;
   std::atomic_signal_fence(std::memory_order_seq_cst);
   // A handler may have posted meanwhile.
-  const bool has_room = shm::HasRoomFor(thread.slot->postbox, size);
+  const bool has_room = shm::HasRoomFor(thread.slot->command_ring, size);
   if (has_room) Put(thread, receiver, parts);
   std::atomic_signal_fence(std::memory_order_seq_cst);
   thread.posts = false;

@@ -27,9 +27,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "shm/command_ring.h"
 #include "shm/datagram_notes.h"
 #include "shm/ipc_times.h"
-#include "shm/postbox.h"
 #include "shm/receipts.h"
 #include "shm/spin_streak.h"
 #include "shm/work_counts.h"
@@ -386,7 +386,7 @@ struct alignas(64) ThreadSlot {
   // Written by the coordinator at each dispatch: a thread that spins ends its turn then, by its
   // clock. kNeverNs where nobody else computes whom it could wait for.
   std::int64_t spin_until_ns;
-  alignas(64) Postbox postbox;
+  alignas(64) CommandRing command_ring;
   // Written by the thread when a handler comes before its note is answered, and `note` says so
   // (kInterrupted): that note. Nobody may have read it yet.
   Notification interrupted;
@@ -397,7 +397,7 @@ static_assert(offsetof(ThreadSlot, announces) == 3272);
 static_assert(offsetof(ThreadSlot, descriptors_changed) == 3276);
 static_assert(offsetof(ThreadSlot, leads_counter) == 3280);
 static_assert(offsetof(ThreadSlot, spin) == 3288);
-static_assert(offsetof(ThreadSlot, postbox) == 3328);
+static_assert(offsetof(ThreadSlot, command_ring) == 3328);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);

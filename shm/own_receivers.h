@@ -35,7 +35,7 @@ struct OwnReceivers {
   std::uint32_t count;
   std::uint32_t reserved;
   // The network namespace that all of them are in, as SO_NETNS_COOKIE has it. From sockets of this
-  // namespace they take datagrams in postboxes, too (postbox.h); 0: from none.
+  // namespace they take datagrams in command rings, too (command_ring.h); 0: from none.
   std::uint64_t network;
   ReceiverAddress addresses[kMost];  // in order
 };

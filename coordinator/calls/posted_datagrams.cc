@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "shm/check.h"
-#include "shm/postbox.h"
+#include "shm/command_ring.h"
 
 namespace tcs {
 
@@ -15,25 +15,25 @@ constexpr const char* kWrongDatagrams = "posted datagrams that cannot be";
 
 const char* PostedDatagrams::Take(Task& task) {
   TCS_CHECK(run_.turn.IsOf(task));
-  shm::Postbox& box = SlotOf(task).postbox;
-  const std::uint64_t end = box.posted.load(std::memory_order_acquire);
+  shm::CommandRing& ring = SlotOf(task).command_ring;
+  const std::uint64_t end = ring.posted.load(std::memory_order_acquire);
   if (end == task.posts_taken) return nullptr;
   // Nothing moves any more.
   const bool is_over = !world_.present() || run_.IsInGrace();
   while (task.posts_taken != end) {
-    shm::Postbox::Head head;
-    if (!shm::ReadHead(box, task.posts_taken, end, &head) || head.receiver >= world_.receivers()) {
+    shm::CommandRing::Head head;
+    if (!shm::ReadHead(ring, task.posts_taken, end, &head) || head.receiver >= world_.receivers()) {
       return kWrongDatagrams;
     }
     datagram_.resize(head.size);
-    shm::CopyFromRing(box, task.posts_taken + sizeof head, datagram_.data(), head.size);
+    shm::CopyFromRing(ring, task.posts_taken + sizeof head, datagram_.data(), head.size);
     task.posts_taken += shm::RoomFor(head.size);
     if (is_over) continue;
     world_.ReceivePosted(head.receiver, datagram_,
                          {run_.WrittenAt(OwnTime(head.time_ns)),
                           {static_cast<std::uint64_t>(task.tid), head.ran_ns}});
   }
-  box.taken.store(end, std::memory_order_release);
+  ring.taken.store(end, std::memory_order_release);
   return nullptr;
 }
 

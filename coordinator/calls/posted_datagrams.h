@@ -1,6 +1,6 @@
-// Commands that threads have sent through their postboxes (shm/postbox.h) instead of the kernel.
-// They go to where the same datagrams would have come in, in the order in which they were sent, at
-// the times that the program's clock showed.
+// Commands that threads have sent through their command rings (shm/command_ring.h) instead of the
+// kernel. They go to where the same datagrams would have come in, in the order in which they were
+// sent, at the times that the program's clock showed.
 //
 // For the coordinator's thread only. Makes no system call but those of the world that takes them.
 #pragma once

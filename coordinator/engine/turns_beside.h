@@ -9,8 +9,9 @@
 //   - The turn is over before the dynamics have something for the robot, and before it is further
 //     from the slowest leaf than the drift bound.
 //   - In its turn the thread does to others only what is looked at in its order: commands that it
-//     posts (shm/postbox.h), and datagrams to sockets that are local to its robot. It reads from
-//     such sockets alone. All else ends the turn, and is done in the next one, which has its order.
+//     posts (shm/command_ring.h), and datagrams to sockets that are local to its robot. It reads
+//     from such sockets alone. All else ends the turn, and is done in the next one, which has its
+//     order.
 //
 // What another robot could do all the same is to send a signal, or to reach a local socket for the
 // first time. Both count as done when the turn is over (calls/local_sockets.h, Robot::Furthest),

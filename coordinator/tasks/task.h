@@ -157,7 +157,7 @@ struct Task : HostThread {
   std::int64_t activations = 0;
   Activation activation;           // this one, while it does not wait
   bool is_further = false;         // not the first thread of a client
-  std::uint64_t posts_taken = 0;   // of its postbox (shm/postbox.h): what comes next
+  std::uint64_t posts_taken = 0;   // of its command ring (shm/command_ring.h): what comes next
   std::uint32_t changes_seen = 0;  // of its slot's descriptors_changed
   int row = 0;                     // in the schedule trace and the log of dispatches
 

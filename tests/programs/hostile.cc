@@ -26,9 +26,9 @@
 
 #include "shm/attach_protocol.h"
 #include "shm/clock_page.h"
+#include "shm/command_ring.h"
 #include "shm/dds_exchange.h"
 #include "shm/layout.h"
-#include "shm/postbox.h"
 
 namespace {
 
@@ -166,19 +166,20 @@ void PostNonsense() {
   constexpr char kCommands[][32] = {R"({"force": [1e3, -1e-300, 1.50]})",
                                     "{\"force\": [nan, 1e999, \xff ! 1 }"};
   constexpr std::uint32_t kSize = sizeof kCommands[0] - 1;
-  Postbox& box = Slots()->postbox;
-  for (std::uint64_t i = 1 + Below(60); i > 0 && HasRoomFor(box, kSize); --i) {
+  CommandRing& ring = Slots()->command_ring;
+  for (std::uint64_t i = 1 + Below(60); i > 0 && HasRoomFor(ring, kSize); --i) {
     const bool is_odd = Below(200) == 0;
-    const Postbox::Head head{static_cast<std::int64_t>(Odd()), static_cast<std::int64_t>(Odd()),
-                             is_odd ? static_cast<std::uint32_t>(Odd()) : 0,
-                             is_odd ? static_cast<std::uint32_t>(Odd()) : kSize};
-    PostInto(box, head,
-             [&](std::uint64_t at) { CopyIntoRing(box, at, kCommands[Below(2)], kSize); });
+    const CommandRing::Head head{static_cast<std::int64_t>(Odd()), static_cast<std::int64_t>(Odd()),
+                                 is_odd ? static_cast<std::uint32_t>(Odd()) : 0,
+                                 is_odd ? static_cast<std::uint32_t>(Odd()) : kSize};
+    PostInto(ring, head,
+             [&](std::uint64_t at) { CopyIntoRing(ring, at, kCommands[Below(2)], kSize); });
   }
   if (Below(3) != 0) return;
-  if (Below(2) == 0) box.posted.store(Below(2) == 0 ? Odd() : box.posted.load() + Below(9));
-  if (Below(2) == 0) box.taken.store(Odd());
-  for (int i = 0; i < 20; ++i) box.ring[Below(Postbox::kBytes)] = static_cast<std::uint8_t>(Odd());
+  if (Below(2) == 0) ring.posted.store(Below(2) == 0 ? Odd() : ring.posted.load() + Below(9));
+  if (Below(2) == 0) ring.taken.store(Odd());
+  for (int i = 0; i < 20; ++i)
+    ring.bytes[Below(CommandRing::kBytes)] = static_cast<std::uint8_t>(Odd());
 }
 
 // What is the run's.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
-# What a program sends to the world by UNIX and UDP datagrams goes through its postbox: neither is the program stopped for
+# What a program sends to the world by UNIX and UDP datagrams goes through its command ring: neither is the program stopped for
 # it, nor does tcsim wake. It acts when it was sent, as what the kernel carries, whatever call has sent it, and in the same
 # order, also where the kernel carries some of it. What cannot be sent fails as it does natively.
 # Topics: commands, udp, unix sockets, scheduling, containers.
@@ -43,7 +43,7 @@ ways="send sendto sendmsg sendmmsg child thread long long_sendmmsg beside"
 ((!contained)) || ways="sendto sendmmsg thread long_sendmmsg"
 send_each_way() {  # TYPE
   local type=$1 count rows way name
-  for count in 2 40; do  # 40 are more than a postbox takes
+  for count in 2 40; do  # 40 are more than a command ring takes
     scenario $type "${!type}" write $count >"$out/$type$count.yaml"
     run $type$count --accounting fixed
     rows=$(wc -l <"$out/$type$count/commands.csv")

@@ -14,7 +14,7 @@
 namespace tcs {
 namespace {
 
-using shm::Postbox;
+using shm::CommandRing;
 
 constexpr VirtualTime At(std::int64_t ms) { return RobotTime(ms * 1'000'000); }
 
@@ -53,10 +53,10 @@ class PostedDatagramsTest : public testing::Test {
   }
 
   void Post(std::string_view text, std::int64_t time_ns, std::uint32_t receiver = 0) {
-    Postbox& box = slot_->postbox;
-    ASSERT_TRUE(shm::HasRoomFor(box, text.size()));
-    shm::PostInto(box, {time_ns, 0, receiver, static_cast<std::uint32_t>(text.size())},
-                  [&](std::uint64_t at) { shm::CopyIntoRing(box, at, text.data(), text.size()); });
+    CommandRing& ring = slot_->command_ring;
+    ASSERT_TRUE(shm::HasRoomFor(ring, text.size()));
+    shm::PostInto(ring, {time_ns, 0, receiver, static_cast<std::uint32_t>(text.size())},
+                  [&](std::uint64_t at) { shm::CopyIntoRing(ring, at, text.data(), text.size()); });
   }
   // How many of the commands were sent by then.
   std::int64_t ActedBy(std::int64_t ms) {
@@ -86,7 +86,7 @@ TEST_F(PostedDatagramsTest, AreTheWorldsReceiversCommandsAtTheTimesOfTheirSends)
   Post(kPush, 12 * kMs);
   Post(kPush, 15 * kMs, 1);
   EXPECT_EQ(posted_.Take(*task_), nullptr);
-  EXPECT_EQ(slot_->postbox.taken, slot_->postbox.posted);
+  EXPECT_EQ(slot_->command_ring.taken, slot_->command_ring.posted);
   EXPECT_EQ(world_.kept_commands(), 2u);
   EXPECT_EQ(ActedBy(14), 1);
   EXPECT_EQ(ActedBy(16), 2);
@@ -116,12 +116,12 @@ TEST_F(PostedDatagramsTest, ThatAreNoCommandsAreToldOf) {
 TEST_F(PostedDatagramsTest, ThatCannotBeAreSaidToBeSo) {
   Post(kPush, 12 * kMs, 2);
   EXPECT_NE(posted_.Take(*task_), nullptr);
-  task_->posts_taken = slot_->postbox.posted;
-  slot_->postbox.posted += 8;
+  task_->posts_taken = slot_->command_ring.posted;
+  slot_->command_ring.posted += 8;
   EXPECT_NE(posted_.Take(*task_), nullptr);
-  slot_->postbox.posted -= 16;
+  slot_->command_ring.posted -= 16;
   EXPECT_NE(posted_.Take(*task_), nullptr);
-  slot_->postbox.posted = ~std::uint64_t{0};
+  slot_->command_ring.posted = ~std::uint64_t{0};
   EXPECT_NE(posted_.Take(*task_), nullptr);
   EXPECT_EQ(world_.kept_commands(), 0u);
 }
@@ -130,7 +130,7 @@ TEST_F(PostedDatagramsTest, GoNowhereOnceTheWorldHasStopped) {
   Post(kPush, 12 * kMs);
   run_.grace_began = At(10);
   EXPECT_EQ(posted_.Take(*task_), nullptr);
-  EXPECT_EQ(slot_->postbox.taken, slot_->postbox.posted);
+  EXPECT_EQ(slot_->command_ring.taken, slot_->command_ring.posted);
   EXPECT_EQ(world_.kept_commands(), 0u);
 }
 

@@ -49,7 +49,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, spin_gap_ns), 3284u);
   EXPECT_EQ(offsetof(ThreadSlot, spin), 3288u);
   EXPECT_EQ(offsetof(ThreadSlot, spin_until_ns), 3320u);
-  EXPECT_EQ(offsetof(ThreadSlot, postbox), 3328u);
+  EXPECT_EQ(offsetof(ThreadSlot, command_ring), 3328u);
   EXPECT_EQ(offsetof(ThreadSlot, interrupted), 5376u);
 }
 
