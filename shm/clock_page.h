@@ -159,7 +159,7 @@ inline bool RemoveStolen(ClockPage& page, const ClockReading& r, std::int64_t ho
 
 // Takes out what the TSC and the CPU clock have both counted and the thread has not had; the thread
 // is stopped.
-inline void RemoveUntold(ClockPage& page, const ClockReading& r, std::int64_t host_ns) {
+inline void RemoveUnaccounted(ClockPage& page, const ClockReading& r, std::int64_t host_ns) {
   const std::int64_t stolen = MulQ32(host_ns, page.ns_per_host_ns_q32);
   std::uint64_t expected = r.executed_word;
   const std::uint64_t desired = PackAdjust(r.executed_word, AdjustValue(r.executed_word) - stolen);

@@ -122,11 +122,12 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
     Print("of the clients' {:.3f} s, {:.3f} s were computed ahead on further processors\n",
           Seconds(r.client_ns), Seconds(r.ahead_ns));
   }
-  if (r.untold > 0) {
+  if (r.unaccounted_steals > 0) {
     Print(
         "the host took the processor {} in the middle of a turn, and no clock of the kernel showed "
         "it: {:.3f} ms are not charged (they are part of stolen_ns in summary.json)\n",
-        r.untold == 1 ? "once" : fmt::format("{} times", r.untold), Milliseconds(r.untold_ns));
+        r.unaccounted_steals == 1 ? "once" : fmt::format("{} times", r.unaccounted_steals),
+        Milliseconds(r.unaccounted_steal_ns));
   }
   Print("written to {}: summary.json, *.csv, trace.json (for ui.perfetto.dev), *.log\n", directory);
   Print("to look at it: tcsim report {}\n", directory);
@@ -161,8 +162,8 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
             {"dynamics_ns", r.dynamics_ns},
             {"coordinating_ns", r.coordinating_ns},
             {"overhead_percent", OverheadPercent(r)},
-            {"untold", r.untold},
-            {"untold_ns", r.untold_ns},
+            {"unaccounted_steals", r.unaccounted_steals},
+            {"unaccounted_steal_ns", r.unaccounted_steal_ns},
             {"dispatches", r.switches},
             {"samples", r.samples},
             {"commands", r.commands},

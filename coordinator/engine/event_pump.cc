@@ -55,7 +55,7 @@ PollOutcome EventPump::LookOnce(HostDuration timeout, EventTime when, bool is_re
   if (!is_rest) all_.host_cpu.Woke();
   if (sleeps) all_.state_link.Does(Doing::kSchedules, all_.host_cpu.stop_tsc());
   if (n == 0 && is_rest) return {};
-  if (counts) all_.settler.TakeOutUntold(*run_.turn.task(), before, timeout);
+  if (counts) all_.settler.TakeOutUnaccounted(*run_.turn.task(), before, timeout);
   if (n == 0 && run_.turn.lasts()) {
     if (held || (rearms && is_cut_short)) {
       all_.host_cpu.active().TakeBack();

@@ -14,11 +14,12 @@
 
 namespace tcs {
 
-void Settler::TakeOutUntold(Task& task, const shm::ClockReading& before, HostDuration asked) {
-  const HostDuration stolen = all_.host_cpu.TakeOutUntold(task, before, asked, CpuClockOf(task));
+void Settler::TakeOutUnaccounted(Task& task, const shm::ClockReading& before, HostDuration asked) {
+  const HostDuration stolen =
+      all_.host_cpu.TakeOutUnaccounted(task, before, asked, CpuClockOf(task));
   if (stolen <= HostDuration()) return;
-  run_.report.untold_ns += stolen.ns();
-  ++run_.report.untold;
+  run_.report.unaccounted_steal_ns += stolen.ns();
+  ++run_.report.unaccounted_steals;
 }
 
 bool Settler::TakeNotesOf(Task& task) {
@@ -76,7 +77,7 @@ void Settler::Settle(Task& task) {
       .horizon = run_.turn.horizon(),
       .reached = on_robot(reading.time_ns),
       .shown = on_robot(shm::ShownTime(page, reading)),
-      .most_ours = metered.OnRobot(metered.OnEither(shm::kMostExchangeNs)),
+      .most_overhead = metered.OnRobot(metered.OnEither(shm::kMostExchangeNs)),
       .is_preempted = run_.turn.timed_out && (!run_.turn.notified || run_.turn.is_sent_to_gate),
       .credit = -task.debt,
       .in_steps = task.metered.is_watched};
@@ -84,9 +85,10 @@ void Settler::Settle(Task& task) {
     run.noted = on_robot(noted_ns);
     run.shown = std::max(on_robot(page.last_shown_ns.load()), *run.noted);
   }
-  const auto [progress, debt, ours] = SettleRun(run);
-  metered.host_origin_ns += metered.OnHost(ours).ns();
-  const VirtualDuration charged = std::max(VirtualDuration(), VirtualNs(reading.cpu_ns) - ours);
+  const auto [progress, debt, exchange_overhead] = SettleRun(run);
+  metered.host_origin_ns += metered.OnHost(exchange_overhead).ns();
+  const VirtualDuration charged =
+      std::max(VirtualDuration(), VirtualNs(reading.cpu_ns) - exchange_overhead);
   const VirtualDuration executed = std::max(VirtualDuration(), charged - task.charged);
   const HostDuration host = metered.OnHost(executed);
   run_.report.client_ns += host.ns();

@@ -17,7 +17,7 @@ class Settler : public EnginePart {
   // False if the thread cannot have done what it has noted: its process is ended for that.
   bool TakeNotesOf(Task& task);
   // Time that the host's clock shows as the thread's, and that the host gave to others.
-  void TakeOutUntold(Task& task, const shm::ClockReading& before, HostDuration asked);
+  void TakeOutUnaccounted(Task& task, const shm::ClockReading& before, HostDuration asked);
 };
 
 }  // namespace tcs

@@ -31,8 +31,8 @@ class FixedMeter : public Meter {
   Found Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
              const CpuClock& clock) override;
   bool HasOverslept(std::uint64_t, std::uint64_t, HostDuration) const override { return false; }
-  HostDuration TakeOutUntold(MeteredThread&, const shm::ClockReading&, std::uint64_t, HostDuration,
-                             const CpuClock&) override {
+  HostDuration TakeOutUnaccounted(MeteredThread&, const shm::ClockReading&, std::uint64_t,
+                                  HostDuration, const CpuClock&) override {
     return {};
   }
   void Check(MeteredThread&, std::uint64_t, const CpuClock&) override {}

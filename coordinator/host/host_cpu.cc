@@ -172,11 +172,11 @@ Meter::Found HostCpu::Look(HostThread& thread, ProgramTime horizon, const Meter:
   return MeterOf(thread).Look(thread.metered, stop_tsc_, horizon, clock);
 }
 
-HostDuration HostCpu::TakeOutUntold(HostThread& thread, const shm::ClockReading& before,
-                                    HostDuration asked, const Meter::CpuClock& clock) {
+HostDuration HostCpu::TakeOutUnaccounted(HostThread& thread, const shm::ClockReading& before,
+                                         HostDuration asked, const Meter::CpuClock& clock) {
   if (!MeterOf(thread).HasOverslept(before.tsc, stop_tsc_, asked) || !thread.HasOwnClock())
     return {};
-  return MeterOf(thread).TakeOutUntold(thread.metered, before, stop_tsc_, asked, clock);
+  return MeterOf(thread).TakeOutUnaccounted(thread.metered, before, stop_tsc_, asked, clock);
 }
 
 void HostCpu::Check(HostThread& thread, const Meter::CpuClock& clock) {

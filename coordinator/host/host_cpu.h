@@ -83,8 +83,8 @@ class HostCpu {
 
   // The coordinator was to sleep for `asked`, from when the thread's clock was at `before` on.
   // What was stolen meanwhile, and no clock tells of, is taken out. Returns it.
-  HostDuration TakeOutUntold(HostThread& thread, const shm::ClockReading& before,
-                             HostDuration asked, const Meter::CpuClock& clock);
+  HostDuration TakeOutUnaccounted(HostThread& thread, const shm::ClockReading& before,
+                                  HostDuration asked, const Meter::CpuClock& clock);
   // Of a thread that ran on though another one was dispatched.
   void Check(HostThread& thread, const Meter::CpuClock& clock);
   // What the thread has moved the origin of its CPU clock by, on its ways out of gates, is its own

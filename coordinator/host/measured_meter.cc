@@ -70,20 +70,20 @@ bool MeasuredMeter::HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc,
   return tsc - since_tsc > static_cast<std::uint64_t>(most_ns * rate_.ticks_per_ns);
 }
 
-HostDuration MeasuredMeter::TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
-                                          std::uint64_t tsc, HostDuration asked,
-                                          const CpuClock& clock) {
+HostDuration MeasuredMeter::TakeOutUnaccounted(MeteredThread& thread,
+                                               const shm::ClockReading& before, std::uint64_t tsc,
+                                               HostDuration asked, const CpuClock& clock) {
   Check(thread, tsc, clock);  // which tells of most thieves
   shm::ClockPage& page = *thread.page;
   const shm::ClockReading now = shm::ReadClockAt(page, tsc);
   const std::int64_t shown_ns = page.last_shown_ns.load(std::memory_order_relaxed);
-  const HostDuration stolen = HostNs(StolenUntold(
+  const HostDuration stolen = HostNs(UnaccountedSteal(
       {.counted_ns = thread.OnHost(VirtualNs(now.cpu_ns - before.cpu_ns)).ns(),
        .asked_ns = asked.ns(),
        .usual_ns = thread.longest_run.ns(),
        .shown_ns = thread.OnHost(PassedBetween(OwnTime(before.time_ns), OwnTime(shown_ns))).ns()}));
   if (stolen <= HostDuration()) return {};
-  shm::RemoveUntold(page, now, stolen.ns());
+  shm::RemoveUnaccounted(page, now, stolen.ns());
   // The origin has been moved here, not by the thread.
   thread.page_origin_ns += stolen.ns();
   thread.host_origin_ns += stolen.ns();

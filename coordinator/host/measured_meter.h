@@ -24,8 +24,9 @@ class MeasuredMeter : public Meter {
   Found Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
              const CpuClock& clock) override;
   bool HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc, HostDuration asked) const override;
-  HostDuration TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
-                             std::uint64_t tsc, HostDuration asked, const CpuClock& clock) override;
+  HostDuration TakeOutUnaccounted(MeteredThread& thread, const shm::ClockReading& before,
+                                  std::uint64_t tsc, HostDuration asked,
+                                  const CpuClock& clock) override;
   void Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
   void End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
   void ChargeCall(MeteredThread&, VirtualDuration) override {}  // its time is on the clock

@@ -135,9 +135,9 @@ class Meter {
   virtual bool HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc,
                             HostDuration asked) const = 0;
   // Then takes it out, and returns it. The thread's clock was at `before` when the sleep began.
-  virtual HostDuration TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
-                                     std::uint64_t tsc, HostDuration asked,
-                                     const CpuClock& clock) = 0;
+  virtual HostDuration TakeOutUnaccounted(MeteredThread& thread, const shm::ClockReading& before,
+                                          std::uint64_t tsc, HostDuration asked,
+                                          const CpuClock& clock) = 0;
 
   // Takes out of the thread's clock what was stolen until `tsc`, as its CPU clock tells.
   virtual void Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) = 0;

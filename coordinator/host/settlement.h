@@ -35,16 +35,16 @@ struct StoppedRun {
   // the program's natively, too: who spins on it must get on.
   std::optional<VirtualTime> noted;
   // What of the rest may have been the notification itself: the thread says when it began.
-  VirtualDuration most_ours = VirtualNs(shm::kMostExchangeNs);
+  VirtualDuration most_overhead = VirtualNs(shm::kMostExchangeNs);
   bool is_preempted = false;  // by the timer, rather than by what it asked for
   VirtualDuration credit;     // that it had at its dispatch
   bool in_steps = false;      // others look at what it does in short steps
 };
 
 struct Settlement {
-  VirtualTime progress;  // of the virtual CPU: the thread's own time from now on
-  VirtualDuration debt;  // executed beyond that; negative: credit
-  VirtualDuration ours;  // counted, but neither time nor charge of the thread's
+  VirtualTime progress;               // of the virtual CPU: the thread's own time from now on
+  VirtualDuration debt;               // executed beyond that; negative: credit
+  VirtualDuration exchange_overhead;  // counted, but neither time nor charge of the thread's
 };
 
 // Of a turn from `start` to `horizon`, times on one clock. `in_steps`: others look in short steps.
@@ -58,13 +58,15 @@ constexpr bool IsAtHorizon(Time now, Time start, Time horizon, bool in_steps) {
 constexpr Settlement SettleRun(const StoppedRun& run) {
   constexpr VirtualDuration kNone;
   Settlement result;
-  // What the notification itself takes is ours: neither the thread's clock nor its charge shows it.
-  // One that had begun to notify when an earlier turn ended still owes what it had executed then.
+  // What the notification itself takes is exchange overhead: neither the thread's clock nor its
+  // charge shows it. One that had begun to notify when an earlier turn ended still owes what it had
+  // executed then.
   if (run.noted.has_value() && *run.noted < run.horizon) {
     const VirtualTime begun = run.start + std::max(kNone, -run.credit);
-    result.ours = std::clamp(run.reached - std::max(*run.noted, begun), kNone, run.most_ours);
+    result.exchange_overhead =
+        std::clamp(run.reached - std::max(*run.noted, begun), kNone, run.most_overhead);
   }
-  const VirtualTime reached = run.reached - result.ours;
+  const VirtualTime reached = run.reached - result.exchange_overhead;
   // What the clock has shown has happened, even where stolen time was found in it afterwards.
   result.progress =
       std::clamp(std::max(reached, run.shown), run.start, std::max(run.start, run.horizon));

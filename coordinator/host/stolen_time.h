@@ -27,7 +27,7 @@ struct HostTurn {
 inline constexpr std::int64_t kMostTimerLatenessNs = 1'000'000;
 
 // What of the turn is not the thread's; 0 where the timer came in time.
-constexpr std::int64_t StolenUntold(const HostTurn& turn) {
+constexpr std::int64_t UnaccountedSteal(const HostTurn& turn) {
   if (turn.counted_ns <= turn.asked_ns + kMostTimerLatenessNs) return 0;
   const std::int64_t its = std::clamp(turn.usual_ns, std::int64_t{0}, turn.asked_ns);
   return turn.counted_ns - std::max(its, std::min(turn.shown_ns, turn.asked_ns));

@@ -109,7 +109,8 @@ struct RunReport {
   std::int64_t ahead_ns = 0;      // but for what clients have computed on further ones, ahead,
   std::int64_t awaited_ns = 0;    // and for how long they were waited for
   std::int64_t turns_beside = 0;  // of those that clients had there before their order
-  std::int64_t untold = 0, untold_ns = 0;  // how often, and how much, was stolen and no clock told
+  std::int64_t unaccounted_steals = 0,
+               unaccounted_steal_ns = 0;  // how often, and how much, was stolen and no clock told
   std::int64_t switches = 0, samples = 0, commands = 0;
   PaceReport pace;
   std::vector<ClientReport> clients;

@@ -31,10 +31,10 @@ import json, sys
 summary = json.load(open(sys.argv[1] + '/summary.json'))
 worker = summary['clients']['robot/worker']
 printed = open(sys.argv[2]).read()
-print({key: summary[key] for key in ('untold', 'untold_ns')}, worker)
-assert ('no clock of the kernel showed it' in printed) == (summary['untold'] > 0), printed
-assert worker['stolen_ns'] >= summary['untold_ns']
-assert summary['untold'] > 0 or sys.argv[3] != 'interrupts long', 'no theft was found'
+print({key: summary[key] for key in ('unaccounted_steals', 'unaccounted_steal_ns')}, worker)
+assert ('no clock of the kernel showed it' in printed) == (summary['unaccounted_steals'] > 0), printed
+assert worker['stolen_ns'] >= summary['unaccounted_steal_ns']
+assert summary['unaccounted_steals'] > 0 or sys.argv[3] != 'interrupts long', 'no theft was found'
 assert abs(worker['charged_ns'] / worker['host_cpu_ns'] - 1) < 0.03
 EOF
 }

@@ -58,7 +58,7 @@ TEST_F(FixedMeterTest, ACallThatTheShimDoesNotSeeCostsTheSame) {
 
 TEST_F(FixedMeterTest, NoSleepOfTheCoordinatorsIsTooLong) {
   EXPECT_FALSE(meter_.HasOverslept(0, ~std::uint64_t{0}, HostNs(1)));
-  EXPECT_EQ(meter_.TakeOutUntold(thread_, {}, tsc_, HostNs(1), clock_), HostDuration());
+  EXPECT_EQ(meter_.TakeOutUnaccounted(thread_, {}, tsc_, HostNs(1), clock_), HostDuration());
 }
 
 TEST_F(FixedMeterTest, WhoComputesForLongWithoutACallIsSilent) {

@@ -199,7 +199,7 @@ TEST_F(HostCpuTest, AClockThatItsProcessHasOverwrittenIsNotReckonedWith) {
   slot_.clock.horizon_ns = 1;
   EXPECT_FALSE(thread_.HasOwnClock());
   const std::uint64_t word = slot_.clock.executed_adjust.load();
-  EXPECT_EQ(cpu_.TakeOutUntold(thread_, long_ago, HostNs(kMs), clock_), HostDuration());
+  EXPECT_EQ(cpu_.TakeOutUnaccounted(thread_, long_ago, HostNs(kMs), clock_), HostDuration());
   EXPECT_EQ(slot_.clock.executed_adjust.load(), word);
 }
 

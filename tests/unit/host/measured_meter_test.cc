@@ -234,7 +234,8 @@ TEST_F(MeasuredMeterTest, WhatNoClockTellsIsTakenOutOfAll) {
   const shm::ClockReading before = ReadClockAt(page_, kBegun);
   const std::int64_t origin_ns = thread_.host_origin_ns;
   host_cpu_ns_ += 50 * kMs;
-  EXPECT_EQ(meter_.TakeOutUntold(thread_, before, tsc, HostNs(4 * kMs), clock_), HostNs(46 * kMs));
+  EXPECT_EQ(meter_.TakeOutUnaccounted(thread_, before, tsc, HostNs(4 * kMs), clock_),
+            HostNs(46 * kMs));
   EXPECT_EQ(ClockAt(tsc), kStart + 4 * kMs);
   EXPECT_EQ(thread_.host_origin_ns, origin_ns + 46 * kMs);
   EXPECT_EQ(thread_.page_origin_ns, page_.host_cpu_origin_ns);
@@ -247,7 +248,7 @@ TEST_F(MeasuredMeterTest, WhatTheCpuClockTellsIsNotTakenOutTwice) {
   const std::uint64_t tsc = kBegun + 50 * kTicksPerMs;
   const shm::ClockReading before = ReadClockAt(page_, kBegun);
   host_cpu_ns_ += 3 * kMs;
-  EXPECT_EQ(meter_.TakeOutUntold(thread_, before, tsc, HostNs(4 * kMs), clock_), HostNs(0));
+  EXPECT_EQ(meter_.TakeOutUnaccounted(thread_, before, tsc, HostNs(4 * kMs), clock_), HostNs(0));
   EXPECT_EQ(ClockAt(tsc), kStart + 3 * kMs);
 }
 

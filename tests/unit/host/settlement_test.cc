@@ -25,7 +25,7 @@ TEST_P(SettleRunTest, ComesTo) {
   const Settlement settled = SettleRun(GetParam().run);
   EXPECT_EQ(settled.progress, GetParam().settled.progress);
   EXPECT_EQ(settled.debt, GetParam().settled.debt);
-  EXPECT_EQ(settled.ours, GetParam().settled.ours);
+  EXPECT_EQ(settled.exchange_overhead, GetParam().settled.exchange_overhead);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -63,26 +63,26 @@ INSTANTIATE_TEST_SUITE_P(
               .horizon = At(9 * kMs),
               .reached = At(7 * kMs + 8 * kUs),
               .noted = At(7 * kMs)},
-             {.progress = At(7 * kMs), .ours = 8 * kUs}},
+             {.progress = At(7 * kMs), .exchange_overhead = 8 * kUs}},
         Case{"NorIsMoreThanTheWholeRun",
              {.start = At(5 * kMs),
               .horizon = At(9 * kMs),
               .reached = At(5 * kMs + 8 * kUs),
               .noted = At(3 * kMs)},
-             {.progress = At(5 * kMs), .ours = 8 * kUs}},
+             {.progress = At(5 * kMs), .exchange_overhead = 8 * kUs}},
         Case{"WhatIsMoreThanANotificationTakesIsNot",
              {.start = At(5 * kMs),
               .horizon = At(9 * kMs),
               .reached = At(8 * kMs),
               .noted = At(3 * kMs)},
-             {.progress = At(8 * kMs - 50 * kUs), .ours = 50 * kUs}},
+             {.progress = At(8 * kMs - 50 * kUs), .exchange_overhead = 50 * kUs}},
         Case{"ButNotWhatAnEarlierTurnOwes",
              {.start = At(5 * kMs),
               .horizon = At(9 * kMs),
               .reached = At(5 * kMs + 9 * kUs),
               .noted = At(5 * kMs),
               .credit = -1 * kUs},
-             {.progress = At(5 * kMs + 1 * kUs), .ours = 8 * kUs}},
+             {.progress = At(5 * kMs + 1 * kUs), .exchange_overhead = 8 * kUs}},
         Case{"ANotificationInTheFutureTakesNothing",
              {.start = At(5 * kMs),
               .horizon = At(9 * kMs),

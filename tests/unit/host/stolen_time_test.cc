@@ -7,37 +7,37 @@
 namespace tcs {
 namespace {
 
-TEST(StolenUntold, NothingIsStolenFromATurnThatEndsBeforeItsTimerIsDue) {
-  EXPECT_EQ(StolenUntold({.counted_ns = 3 * kMs, .asked_ns = 4 * kMs, .usual_ns = 15'000}), 0);
+TEST(UnaccountedSteal, NothingIsStolenFromATurnThatEndsBeforeItsTimerIsDue) {
+  EXPECT_EQ(UnaccountedSteal({.counted_ns = 3 * kMs, .asked_ns = 4 * kMs, .usual_ns = 15'000}), 0);
 }
 
-TEST(StolenUntold, ATimerMayBeLate) {
+TEST(UnaccountedSteal, ATimerMayBeLate) {
   EXPECT_EQ(
-      StolenUntold(
+      UnaccountedSteal(
           {.counted_ns = kMs / 2 + kMostTimerLatenessNs, .asked_ns = kMs / 2, .usual_ns = kMs / 2}),
       0);
 }
 
-TEST(StolenUntold, NobodyComputesBeyondTheTimer) {
-  EXPECT_EQ(StolenUntold({.counted_ns = 201 * kMs, .asked_ns = 2 * kMs, .usual_ns = 50 * kMs}),
+TEST(UnaccountedSteal, NobodyComputesBeyondTheTimer) {
+  EXPECT_EQ(UnaccountedSteal({.counted_ns = 201 * kMs, .asked_ns = 2 * kMs, .usual_ns = 50 * kMs}),
             199 * kMs);
 }
 
-TEST(StolenUntold, AThreadOfShortTurnsKeepsItsUsualOne) {
-  EXPECT_EQ(StolenUntold({.counted_ns = 201 * kMs, .asked_ns = 4 * kMs, .usual_ns = 15'000}),
+TEST(UnaccountedSteal, AThreadOfShortTurnsKeepsItsUsualOne) {
+  EXPECT_EQ(UnaccountedSteal({.counted_ns = 201 * kMs, .asked_ns = 4 * kMs, .usual_ns = 15'000}),
             201 * kMs - 15'000);
 }
 
-TEST(StolenUntold, WhatItsClockHasShownIsTheThreads) {
+TEST(UnaccountedSteal, WhatItsClockHasShownIsTheThreads) {
   EXPECT_EQ(
-      StolenUntold(
+      UnaccountedSteal(
           {.counted_ns = 201 * kMs, .asked_ns = 4 * kMs, .usual_ns = 15'000, .shown_ns = 3 * kMs}),
       198 * kMs);
   // A sleep inside the turn is on that clock, too, and is no computing.
-  EXPECT_EQ(StolenUntold({.counted_ns = 201 * kMs,
-                          .asked_ns = 4 * kMs,
-                          .usual_ns = 15'000,
-                          .shown_ns = 900 * kMs}),
+  EXPECT_EQ(UnaccountedSteal({.counted_ns = 201 * kMs,
+                              .asked_ns = 4 * kMs,
+                              .usual_ns = 15'000,
+                              .shown_ns = 900 * kMs}),
             197 * kMs);
 }
 

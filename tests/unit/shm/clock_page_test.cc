@@ -120,7 +120,7 @@ TEST(ClockPage, TakingStolenTimeOutDoesNotTurnTheRunTimeBack) {
 
 TEST(ClockPage, WhatNoClockTellsOfIsTakenOutOfBoth) {
   Page page(0);
-  RemoveUntold(page, ReadClockAt(page, 1'000), 700);
+  RemoveUnaccounted(page, ReadClockAt(page, 1'000), 700);
   EXPECT_EQ(ReadClockAt(page, 1'000).cpu_ns, 300);
   EXPECT_EQ(page.stolen_ns, 700);
   ASSERT_TRUE(RemoveStolen(page, ReadClockAt(page, 1'500), 1'500));  // it is on the CPU clock
