@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "coordinator/os/open_files.h"
-#include "coordinator/tasks/borrowed.h"
+#include "coordinator/tasks/remote_descriptor.h"
 #include "coordinator/tasks/run_state.h"
 #include "shm/layout.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "coordinator/os/open_files.h"
-#include "coordinator/tasks/borrowed.h"
+#include "coordinator/tasks/remote_descriptor.h"
 
 namespace tcs {
 

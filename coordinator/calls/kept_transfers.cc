@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/tasks/borrowed.h"
 #include "coordinator/tasks/client_values.h"
+#include "coordinator/tasks/remote_descriptor.h"
 
 namespace tcs {
 

@@ -21,7 +21,7 @@
 #include "coordinator/os/socket_tables.h"
 #include "coordinator/port/clocks.h"
 #include "coordinator/port/proc_files.h"
-#include "coordinator/tasks/borrowed.h"
+#include "coordinator/tasks/remote_descriptor.h"
 
 namespace tcs {
 

@@ -13,7 +13,7 @@
 #include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/queues/one_waiter.h"
-#include "coordinator/tasks/borrowed.h"
+#include "coordinator/tasks/remote_descriptor.h"
 
 namespace tcs {
 
@@ -72,7 +72,7 @@ bool OffersTheSameOnly(const Task& first, const Task& other, Looks& looks) {
   if (exclusive.empty()) return false;
   bool shared = false;
   for (const EpollEntry& entry : looks.EntriesOf(other)) {
-    const Borrowed target(other, entry.fd);
+    const RemoteDescriptor target(other, entry.fd);
     // What is no longer under its number cannot be looked at.
     if (target.fd() < 0 || !IsAbout(other_set, entry, target.fd())) continue;
     if (!IsReady(target.fd(), entry.events)) continue;

@@ -106,7 +106,7 @@ std::int64_t SyscallDraws::GetRandom(Task& task, const TrappedCall& call) {
   return ReadBytes(task, {{reinterpret_cast<void*>(call.args[0]), call.args[1]}});
 }
 
-bool SyscallDraws::Read(Task& task, const TrappedCall& call, const Borrowed& fd) const {
+bool SyscallDraws::Read(Task& task, const TrappedCall& call, const RemoteDescriptor& fd) const {
   if (!run_.IsFixed() || (call.number != SYS_read && call.number != SYS_readv)) return false;
   const Source source = SourceOf(fd.fd());
   if (source == Source::kNone || !fd.CanBeRead()) return false;

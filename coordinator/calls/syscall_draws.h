@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "coordinator/port/traps.h"
-#include "coordinator/tasks/borrowed.h"
+#include "coordinator/tasks/remote_descriptor.h"
 #include "coordinator/tasks/run_state.h"
 
 namespace tcs {
@@ -21,7 +21,7 @@ class SyscallDraws {
 
   // Carries out a read or readv of `fd`, the descriptor of the call, if that is a file of random
   // numbers, and the run's draws repeat. The result is in task.trap_result. False: it is not.
-  bool Read(Task& task, const TrappedCall& call, const Borrowed& fd) const;
+  bool Read(Task& task, const TrappedCall& call, const RemoteDescriptor& fd) const;
 
  private:
   const RunState& run_;

@@ -12,8 +12,8 @@
 
 #include "coordinator/calls/syscall_semaphores.h"
 #include "coordinator/os/signal_bits.h"
-#include "coordinator/tasks/borrowed.h"
 #include "coordinator/tasks/client_values.h"
+#include "coordinator/tasks/remote_descriptor.h"
 #include "coordinator/tasks/signal_sets.h"
 
 namespace tcs {
@@ -21,7 +21,7 @@ namespace tcs {
 namespace {
 
 // Whether the kernel refuses the call before it waits.
-bool IsRefused(const Borrowed& queue, const TrappedCall& call) {
+bool IsRefused(const RemoteDescriptor& queue, const TrappedCall& call) {
   mq_attr attributes{};
   if (mq_getattr(queue.fd(), &attributes) != 0) return true;
   const auto size = static_cast<std::int64_t>(call.args[2]);
@@ -83,7 +83,7 @@ void SyscallIpc::Queue(Task& task, const TrappedCall& call) {
   const bool sends = call.number == SYS_mq_timedsend;
   const short events = sends ? POLLOUT : POLLIN;
   const auto number = static_cast<int>(call.args[0]);
-  const Borrowed queue(task, number);
+  const RemoteDescriptor queue(task, number);
   if (queue.fd() < 0) return;
   if (sends) {
     shm::NoteSent(SlotOf(task).receipts);

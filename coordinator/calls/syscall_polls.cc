@@ -17,8 +17,8 @@
 #include "coordinator/os/signal_bits.h"
 #include "coordinator/port/proc_files.h"
 #include "coordinator/port/traps.h"
-#include "coordinator/tasks/borrowed.h"
 #include "coordinator/tasks/client_values.h"
+#include "coordinator/tasks/remote_descriptor.h"
 
 namespace tcs {
 
@@ -102,7 +102,7 @@ std::int64_t SyscallPolls::Poll(Task& task, const TrappedCall& call) {
   if (!waited.has_value()) return 0;
   std::vector<DescriptorWaits::Copy> copies;
   const bool ready = std::any_of(waited->begin(), waited->end(), [&](const shm::WaitFd& fd) {
-    Borrowed looked_at(task, fd.fd);
+    RemoteDescriptor looked_at(task, fd.fd);
     const bool is_closed = looked_at.fd() < 0 && errno == EBADF;  // which the kernel says at once
     if (is_closed || looked_at.IsReady(static_cast<short>(fd.events))) return true;
     copies.push_back({fd, looked_at.Take()});
@@ -216,7 +216,7 @@ namespace {
 // What is under a number now: events that are there, of those asked for and of those that nobody
 // has to ask for.
 std::uint32_t EventsAt(const Task& task, int number, std::uint32_t asked) {
-  const Borrowed looked_at(task, number);
+  const RemoteDescriptor looked_at(task, number);
   if (looked_at.fd() < 0) return errno == EBADF ? POLLNVAL : 0;
   pollfd probe{looked_at.fd(), static_cast<short>(asked), 0};
   poll(&probe, 1, 0);

@@ -15,8 +15,8 @@
 #include "coordinator/port/proc_files.h"
 #include "coordinator/port/traps.h"
 #include "coordinator/processes/usage_book.h"
-#include "coordinator/tasks/borrowed.h"
 #include "coordinator/tasks/client_values.h"
+#include "coordinator/tasks/remote_descriptor.h"
 #include "shm/clock_ids.h"
 
 namespace tcs {
@@ -72,7 +72,7 @@ std::int64_t SyscallTimers::Create(Task& task, const TrappedCall& call) {
 }
 
 SyscallTimers::Found SyscallTimers::Find(const Task& task, int number) {
-  const Borrowed fd(task, number);
+  const RemoteDescriptor fd(task, number);
   if (fd.fd() < 0) return {};
   for (Process& process : run_.table.processes()) {
     if (process.dead) continue;

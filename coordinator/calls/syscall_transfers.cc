@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/tasks/borrowed.h"
+#include "coordinator/tasks/remote_descriptor.h"
 
 namespace tcs {
 
@@ -78,7 +78,8 @@ std::int64_t BytesToSend(const Task& task, const TrappedCall& call) {
 
 // Whether the kernel answers though the descriptor is not ready: nothing was asked for, or
 // something is wrong.
-bool FileAnswersAtOnce(const Task& task, const TrappedCall& call, const Borrowed& fd, bool reads) {
+bool FileAnswersAtOnce(const Task& task, const TrappedCall& call, const RemoteDescriptor& fd,
+                       bool reads) {
   const std::int64_t bytes = BytesOf(task, call);
   if (bytes <= 0 || !(reads ? fd.CanBeRead() : fd.CanBeWritten())) return true;
   if (fd.IsTimer()) return !reads || bytes < kCounter;
@@ -94,7 +95,7 @@ bool IsMessage(const Task& task, const TrappedCall& call) {
 }
 
 // What is wrong with a socket, asked for in a way that takes and gives nothing.
-bool SocketFailsAtOnce(const Borrowed& fd, int flags, bool reads) {
+bool SocketFailsAtOnce(const RemoteDescriptor& fd, int flags, bool reads) {
   char byte;
   if (reads) {
     return recv(fd.fd(), &byte, 1, (flags & MSG_OOB) | MSG_PEEK | MSG_DONTWAIT) < 0 &&
@@ -104,7 +105,8 @@ bool SocketFailsAtOnce(const Borrowed& fd, int flags, bool reads) {
          send(fd.fd(), &byte, 0, MSG_DONTWAIT | MSG_NOSIGNAL) < 0 && errno != EAGAIN;
 }
 
-bool SocketAnswersAtOnce(const TrappedCall& call, const Borrowed& fd, const Transfer& transfer) {
+bool SocketAnswersAtOnce(const TrappedCall& call, const RemoteDescriptor& fd,
+                         const Transfer& transfer) {
   const int flags = transfer.flags;
   if (call.number == SYS_connect) return true;
   if (call.number == SYS_accept || call.number == SYS_accept4) {
@@ -119,7 +121,7 @@ bool SocketAnswersAtOnce(const TrappedCall& call, const Borrowed& fd, const Tran
   return SocketFailsAtOnce(fd, flags, transfer.reads);
 }
 
-bool AnswersAtOnce(const Task& task, const TrappedCall& call, const Borrowed& fd,
+bool AnswersAtOnce(const Task& task, const TrappedCall& call, const RemoteDescriptor& fd,
                    const Transfer& transfer) {
   const bool is_socket = fd.SocketOption(SO_TYPE, -1) >= 0;
   if (transfer.of_sockets) {
@@ -137,7 +139,7 @@ void SyscallTransfers::Handle(Task& task, const TrappedCall& call) {
   const Transfer transfer = TransferOf(call);
   const short events = transfer.reads ? POLLIN : POLLOUT;
   const auto number = static_cast<int>(call.args[0]);
-  Borrowed fd(task, number);
+  RemoteDescriptor fd(task, number);
   if (draws_.Read(task, call, fd)) return;
   task.trap_continues = true;
   if (!fd.CanWait()) return;

@@ -11,7 +11,7 @@
 #include "coordinator/os/own_number.h"
 #include "coordinator/os/timer_descriptor.h"
 #include "coordinator/processes/usage_book.h"
-#include "coordinator/tasks/borrowed.h"
+#include "coordinator/tasks/remote_descriptor.h"
 
 namespace tcs {
 

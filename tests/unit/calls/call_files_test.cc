@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "coordinator/port/pidfds.h"
-#include "coordinator/tasks/borrowed.h"
+#include "coordinator/tasks/remote_descriptor.h"
 
 namespace tcs {
 namespace {

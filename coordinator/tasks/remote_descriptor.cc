@@ -1,4 +1,4 @@
-#include "coordinator/tasks/borrowed.h"
+#include "coordinator/tasks/remote_descriptor.h"
 
 #include <fcntl.h>
 #include <linux/sock_diag.h>
@@ -41,27 +41,28 @@ UniqueFd CopyOfDescriptor(const Process& process, int number) {
   return UniqueFd(DuplicateFd(process.pidfd.get(), number));
 }
 
-Borrowed::Borrowed(const Task& task, int fd) : fd_(CopyOfDescriptor(*task.process, fd)) {}
+RemoteDescriptor::RemoteDescriptor(const Task& task, int fd)
+    : fd_(CopyOfDescriptor(*task.process, fd)) {}
 
-bool Borrowed::CanWait() const {
+bool RemoteDescriptor::CanWait() const {
   struct stat status;
   if (fd() < 0 || fstat(fd(), &status) != 0) return false;
   return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode);
 }
 
-bool Borrowed::IsNonBlocking() const { return (fcntl(fd(), F_GETFL) & O_NONBLOCK) != 0; }
+bool RemoteDescriptor::IsNonBlocking() const { return (fcntl(fd(), F_GETFL) & O_NONBLOCK) != 0; }
 
-void Borrowed::AcknowledgeAtOnce() const {
+void RemoteDescriptor::AcknowledgeAtOnce() const {
   const int on = 1;
   setsockopt(fd(), IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
 }
 
-bool Borrowed::IsReady(short events) const {
+bool RemoteDescriptor::IsReady(short events) const {
   pollfd probe{fd(), events, 0};
   return poll(&probe, 1, 0) != 0;
 }
 
-bool Borrowed::HasRoomFor(std::int64_t bytes) const {
+bool RemoteDescriptor::HasRoomFor(std::int64_t bytes) const {
   std::uint32_t memory[SK_MEMINFO_VARS] = {};
   socklen_t size = sizeof memory;
   if (getsockopt(fd(), SOL_SOCKET, SO_MEMINFO, memory, &size) != 0) return false;
@@ -80,23 +81,25 @@ bool Borrowed::HasRoomFor(std::int64_t bytes) const {
   return is_stream || !is_local || !MayBeFullOf(bytes, used);
 }
 
-bool Borrowed::IsEventFd() const { return IsAnonymous(getpid(), fd(), kEventFd); }
+bool RemoteDescriptor::IsEventFd() const { return IsAnonymous(getpid(), fd(), kEventFd); }
 
-bool Borrowed::IsTimer() const { return IsTimerDescriptor(fd()); }
+bool RemoteDescriptor::IsTimer() const { return IsTimerDescriptor(fd()); }
 
-bool Borrowed::IsTerminal() const { return tcs::IsTerminal(fd()); }
+bool RemoteDescriptor::IsTerminal() const { return tcs::IsTerminal(fd()); }
 
-bool Borrowed::CanBeRead() const { return (fcntl(fd(), F_GETFL) & O_ACCMODE) != O_WRONLY; }
+bool RemoteDescriptor::CanBeRead() const { return (fcntl(fd(), F_GETFL) & O_ACCMODE) != O_WRONLY; }
 
-bool Borrowed::CanBeWritten() const { return (fcntl(fd(), F_GETFL) & O_ACCMODE) != O_RDONLY; }
+bool RemoteDescriptor::CanBeWritten() const {
+  return (fcntl(fd(), F_GETFL) & O_ACCMODE) != O_RDONLY;
+}
 
-int Borrowed::SocketOption(int option, int otherwise) const {
+int RemoteDescriptor::SocketOption(int option, int otherwise) const {
   int value = 0;
   socklen_t size = sizeof value;
   return getsockopt(fd(), SOL_SOCKET, option, &value, &size) == 0 ? value : otherwise;
 }
 
-std::int64_t Borrowed::SocketTimeout(int option) const {
+std::int64_t RemoteDescriptor::SocketTimeout(int option) const {
   timeval timeout{};
   socklen_t size = sizeof timeout;
   if (getsockopt(fd(), SOL_SOCKET, option, &timeout, &size) != 0) return shm::kNeverNs;

@@ -16,9 +16,9 @@ namespace tcs {
 // (os/descriptor_broker.h) this waits for the process's.
 UniqueFd CopyOfDescriptor(const Process& process, int number);
 
-class Borrowed {
+class RemoteDescriptor {
  public:
-  Borrowed(const Task& task, int fd);
+  RemoteDescriptor(const Task& task, int fd);
 
   int fd() const { return fd_.get(); }  // -1: there is none of that number
 
