@@ -8,7 +8,6 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-#include "libtcs_preload/at_once.h"
 #include "libtcs_preload/call_file.h"
 #include "libtcs_preload/datagram_notes.h"
 #include "libtcs_preload/errno_result.h"
@@ -16,13 +15,14 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/memory_devices.h"
+#include "libtcs_preload/non_blocking.h"
 #include "libtcs_preload/outside.h"
 #include "libtcs_preload/pieces.h"
 #include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/reading.h"
 #include "libtcs_preload/receipts.h"
-#include "libtcs_preload/stamps.h"
+#include "libtcs_preload/socket_timestamps.h"
 #include "libtcs_preload/tcp.h"
 #include "libtcs_preload/transfer.h"
 #include "libtcs_preload/user_memory.h"
@@ -64,7 +64,7 @@ ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
         const long got =
             RawSyscall(SYS_recvmsg, from, Arg(&part_of), (flags & ~MSG_WAITALL) | MSG_DONTWAIT);
         if (got >= 0 && first) {
-          ReplaceStamps(&part_of);
+          ReplaceTimestamps(&part_of);
           message.msg_namelen = part_of.msg_namelen;
           message.msg_controllen = part_of.msg_controllen;
           message.msg_flags = part_of.msg_flags;
@@ -176,7 +176,7 @@ TCS_EXPORT ssize_t __recv_chk(int fd, void* buffer, std::size_t size, std::size_
 TCS_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
   const auto call = [&](int from, int with) {
     const long got = RawSyscall(SYS_recvmsg, from, Arg(message), with);
-    if (got >= 0) ReplaceStamps(message);
+    if (got >= 0) ReplaceTimestamps(message);
     return got;
   };
   if (WaitsForAll(fd, flags)) {
@@ -195,7 +195,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   const auto try_it = [&](int from) {
     AcknowledgeAtOnce(from);
     const long got = RawSyscall(SYS_recvmmsg, from, Arg(messages), count, flags | MSG_DONTWAIT, 0);
-    for (long i = 0; i < got; ++i) ReplaceStamps(&messages[i].msg_hdr);
+    for (long i = 0; i < got; ++i) ReplaceTimestamps(&messages[i].msg_hdr);
     return got;
   };
   const auto take = [&](int from) {

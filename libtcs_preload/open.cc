@@ -127,7 +127,7 @@ TCS_EXPORT int openat64(int folder, const char* path, int flags, ...) {
   return OpenAt(folder, path, flags, mode);
 }
 
-// The twins that the fortified headers call, where the flags make no file.
+// The aliases that the fortified headers call, where the flags make no file.
 TCS_EXPORT int __open_2(const char* path, int flags) { return OpenAt(AT_FDCWD, path, flags, 0); }
 TCS_EXPORT int __open64_2(const char* path, int flags) { return OpenAt(AT_FDCWD, path, flags, 0); }
 TCS_EXPORT int __openat_2(int folder, const char* path, int flags) {

@@ -9,13 +9,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "libtcs_preload/at_once.h"
 #include "libtcs_preload/call_file.h"
 #include "libtcs_preload/datagram_notes.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/local_sockets.h"
+#include "libtcs_preload/non_blocking.h"
 #include "libtcs_preload/outside.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/receipts.h"

@@ -7,6 +7,6 @@
 namespace tcs::preload {
 
 // In what has just been received.
-void ReplaceStamps(msghdr* message);
+void ReplaceTimestamps(msghdr* message);
 
 }  // namespace tcs::preload

@@ -31,46 +31,48 @@ void Sleeps() {
   std::int64_t start = Now();
   EXPECT(thrd_sleep(&wanted, nullptr) == 0, "thrd_sleep");
   ExpectWaited(start, 20 * kMs, 2, "thrd_sleep");
-  if (auto* twin = Named<decltype(nanosleep)>("__nanosleep"); twin != nullptr) {
+  if (auto* alias = Named<decltype(nanosleep)>("__nanosleep"); alias != nullptr) {
     start = Now();
-    EXPECT(twin(&wanted, nullptr) == 0, "__nanosleep");
+    EXPECT(alias(&wanted, nullptr) == 0, "__nanosleep");
     ExpectWaited(start, 20 * kMs, 2, "__nanosleep");
   }
-  if (auto* twin = Named<decltype(clock_nanosleep)>("__clock_nanosleep"); twin != nullptr) {
+  if (auto* alias = Named<decltype(clock_nanosleep)>("__clock_nanosleep"); alias != nullptr) {
     start = Now();
-    EXPECT(twin(CLOCK_MONOTONIC, 0, &wanted, nullptr) == 0, "__clock_nanosleep");
+    EXPECT(alias(CLOCK_MONOTONIC, 0, &wanted, nullptr) == 0, "__clock_nanosleep");
     ExpectWaited(start, 20 * kMs, 2, "__clock_nanosleep");
   }
-  if (auto* twin = Named<decltype(select)>("__select"); twin != nullptr) {
+  if (auto* alias = Named<decltype(select)>("__select"); alias != nullptr) {
     start = Now();
     timeval timeout{0, 20'000};
-    EXPECT(twin(0, nullptr, nullptr, nullptr, &timeout) == 0, "__select");
+    EXPECT(alias(0, nullptr, nullptr, nullptr, &timeout) == 0, "__select");
     ExpectWaited(start, 20 * kMs, 2, "__select");
   }
 }
 
-// Two ends of a pair, under the twins' names.
+// Two ends of a pair, under the aliases.
 void Descriptors() {
-  auto* const twin_read = Named<decltype(read)>("__read");
-  auto* const twin_write = Named<decltype(write)>("__write");
-  auto* const twin_send = Named<decltype(send)>("__send");
-  auto* const twin_poll = Named<decltype(poll)>("__poll");
-  auto* const twin_close = Named<decltype(close)>("__close");
-  auto* const twin_dup2 = Named<decltype(dup2)>("__dup2");
-  auto* const twin_connect = Named<decltype(connect)>("__connect");
+  auto* const alias_read = Named<decltype(read)>("__read");
+  auto* const alias_write = Named<decltype(write)>("__write");
+  auto* const alias_send = Named<decltype(send)>("__send");
+  auto* const alias_poll = Named<decltype(poll)>("__poll");
+  auto* const alias_close = Named<decltype(close)>("__close");
+  auto* const alias_dup2 = Named<decltype(dup2)>("__dup2");
+  auto* const alias_connect = Named<decltype(connect)>("__connect");
   int fds[2];
   EXPECT(socketpair(AF_UNIX, SOCK_STREAM, 0, fds) == 0, "socketpair");
   pollfd polled{fds[1], POLLIN, 0};
   const std::int64_t start = Now();
-  EXPECT(twin_poll(&polled, 1, 20) == 0, "__poll");
+  EXPECT(alias_poll(&polled, 1, 20) == 0, "__poll");
   ExpectWaited(start, 20 * kMs, 2, "__poll");
   char text[4];
-  EXPECT(twin_write(fds[0], "ab", 2) == 2 && twin_send(fds[0], "cd", 2, 0) == 2, "__write, __send");
-  EXPECT(twin_poll(&polled, 1, -1) == 1 && twin_read(fds[1], text, 4) == 4, "__read");
-  EXPECT(twin_dup2(fds[0], 500) == 500 && twin_close(500) == 0 && twin_close(500) == -1, "__close");
+  EXPECT(alias_write(fds[0], "ab", 2) == 2 && alias_send(fds[0], "cd", 2, 0) == 2,
+         "__write, __send");
+  EXPECT(alias_poll(&polled, 1, -1) == 1 && alias_read(fds[1], text, 4) == 4, "__read");
+  EXPECT(alias_dup2(fds[0], 500) == 500 && alias_close(500) == 0 && alias_close(500) == -1,
+         "__close");
   sockaddr_un nobody{AF_UNIX, "/nonexistent"};
   const int fd = socket(AF_UNIX, SOCK_STREAM, 0);
-  EXPECT(twin_connect(fd, reinterpret_cast<sockaddr*>(&nobody), sizeof nobody) == -1 &&
+  EXPECT(alias_connect(fd, reinterpret_cast<sockaddr*>(&nobody), sizeof nobody) == -1 &&
              errno == ENOENT,
          "__connect");
 }
@@ -116,8 +118,8 @@ void Fortified() {
 }
 
 void Processes() {
-  auto* const twin_wait = Named<decltype(wait)>("__wait");
-  auto* const twin_waitpid = Named<decltype(waitpid)>("__waitpid");
+  auto* const alias_wait = Named<decltype(wait)>("__wait");
+  auto* const alias_waitpid = Named<decltype(waitpid)>("__waitpid");
   std::int64_t start = Now();
   pid_t pid = Named<decltype(fork)>("__fork")();
   if (pid == 0) {
@@ -125,12 +127,12 @@ void Processes() {
     _exit(3);
   }
   int status = 0;
-  EXPECT(twin_waitpid(pid, &status, 0) == pid && status == 3 << 8, "__waitpid: %x", status);
+  EXPECT(alias_waitpid(pid, &status, 0) == pid && status == 3 << 8, "__waitpid: %x", status);
   ExpectSoonAfter(start, 40 * kMs, "a child");
   if (g_mode != Mode::kNative) {  // a true vfork cannot be called by a pointer
     pid = Named<decltype(vfork)>("__vfork")();
     if (pid == 0) _exit(4);
-    EXPECT(twin_wait(&status) == pid && status == 4 << 8, "__wait: %x", status);
+    EXPECT(alias_wait(&status) == pid && status == 4 << 8, "__wait: %x", status);
   }
   start = Now();
   FILE* out = Named<decltype(popen)>("_IO_popen")("sleep 0.1; echo done", "r");
@@ -207,21 +209,21 @@ void Alarms() {
 }
 
 void Clocks() {
-  if (auto* twin = Named<decltype(clock_gettime)>("__clock_gettime"); twin != nullptr) {
+  if (auto* alias = Named<decltype(clock_gettime)>("__clock_gettime"); alias != nullptr) {
     const std::int64_t before = Now();
     timespec now;
-    EXPECT(twin(CLOCK_MONOTONIC, &now) == 0, "__clock_gettime");
+    EXPECT(alias(CLOCK_MONOTONIC, &now) == 0, "__clock_gettime");
     EXPECT(before <= ToNs(now) && ToNs(now) <= Now(), "__clock_gettime: %lld",
            (long long)ToNs(now));
   }
-  if (auto* twin = Named<decltype(clock_getres)>("__clock_getres"); twin != nullptr) {
+  if (auto* alias = Named<decltype(clock_getres)>("__clock_getres"); alias != nullptr) {
     timespec resolution;
-    EXPECT(twin(CLOCK_MONOTONIC, &resolution) == 0 && ToNs(resolution) > 0, "__clock_getres");
+    EXPECT(alias(CLOCK_MONOTONIC, &resolution) == 0 && ToNs(resolution) > 0, "__clock_getres");
   }
   const std::int64_t before = Now(CLOCK_REALTIME);
-  if (auto* twin = Named<int(timeval*, void*)>("__gettimeofday"); twin != nullptr) {
+  if (auto* alias = Named<int(timeval*, void*)>("__gettimeofday"); alias != nullptr) {
     timeval now;
-    EXPECT(twin(&now, nullptr) == 0, "__gettimeofday");
+    EXPECT(alias(&now, nullptr) == 0, "__gettimeofday");
     const std::int64_t ns = now.tv_sec * kSecond + now.tv_usec * 1000;
     EXPECT(before / 1000 * 1000 <= ns && ns <= Now(CLOCK_REALTIME), "__gettimeofday: %lld",
            (long long)ns);

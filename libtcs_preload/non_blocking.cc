@@ -1,4 +1,4 @@
-#include "libtcs_preload/at_once.h"
+#include "libtcs_preload/non_blocking.h"
 
 #include <errno.h>
 #include <fcntl.h>

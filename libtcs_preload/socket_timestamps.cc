@@ -1,4 +1,4 @@
-#include "libtcs_preload/stamps.h"
+#include "libtcs_preload/socket_timestamps.h"
 
 #include <linux/sockios.h>
 #include <stdarg.h>
@@ -59,7 +59,7 @@ void Replace(GuestThread& t, const cmsghdr& header, unsigned char* data) {
 
 namespace tcs::preload {
 
-void ReplaceStamps(msghdr* message) {
+void ReplaceTimestamps(msghdr* message) {
   if (message->msg_control == nullptr || message->msg_controllen == 0) return;
   GuestThread* t = Current();
   if (t == nullptr) return;
