@@ -56,12 +56,13 @@ WaitResult CallFile::Wait(short events, std::int64_t deadline_ns, Waiting waitin
   return Take(result, thread_.keeps_files);
 }
 
-WaitResult CallFile::WaitForKey(shm::WaitKey key, std::int64_t deadline_ns, bool again) {
+WaitResult CallFile::WaitForObject(shm::KernelObjectKind kind, std::int64_t deadline_ns,
+                                   bool again) {
   PutBack();
   const Reply reply =
-      Exchange(thread_, Request{.kind = shm::NotificationKind::kWaitKey,
+      Exchange(thread_, Request{.kind = shm::NotificationKind::kWaitObject,
                                 .deadline_ns = deadline_ns,
-                                .args = {static_cast<std::int64_t>(key), 0, again ? 1 : 0,
+                                .args = {static_cast<std::int64_t>(kind), 0, again ? 1 : 0,
                                          is_kept_ ? -1 : std::int64_t{number_} + 1},
                                 .interruptible = true});
   return Take(ResultOf(reply.reason), reply.values[0] != 0);

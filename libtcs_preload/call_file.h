@@ -28,8 +28,8 @@ class CallFile {
 
   // As WaitForFds. After a signal the call begins anew, with what its number means then.
   WaitResult Wait(short events, std::int64_t deadline_ns, Waiting waiting);
-  // The same for a kernel object that cannot be polled (WaitKey).
-  WaitResult WaitForKey(shm::WaitKey key, std::int64_t deadline_ns, bool again);
+  // The same for a kernel object that cannot be polled (KernelObjectKind).
+  WaitResult WaitForObject(shm::KernelObjectKind kind, std::int64_t deadline_ns, bool again);
 
  private:
   void PutBack();

@@ -11,7 +11,7 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
-#include "libtcs_preload/keys.h"
+#include "libtcs_preload/kernel_objects.h"
 #include "libtcs_preload/linger.h"
 #include "libtcs_preload/outside.h"
 #include "libtcs_preload/raw_syscall.h"

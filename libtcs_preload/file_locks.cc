@@ -8,8 +8,8 @@
 
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/kernel_objects.h"
 #include "libtcs_preload/kernel_wait.h"
-#include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
 #include "libtcs_preload/timer_fds.h"

@@ -13,7 +13,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
-#include "libtcs_preload/keys.h"
+#include "libtcs_preload/kernel_objects.h"
 #include "libtcs_preload/memory_devices.h"
 #include "libtcs_preload/non_blocking.h"
 #include "libtcs_preload/outside.h"
@@ -247,7 +247,7 @@ TCS_EXPORT int accept4(int fd, sockaddr* address, socklen_t* size, int flags) {
       static_cast<int>(ReadLike(fd, {.socket = true}, Forms{look, try_it, whole}));
   if (GuestThread* t = Current(); t != nullptr && connection >= 0) {
     SendAtOnce(connection);  // the listener may be from elsewhere
-    TellChanged(*t, tcs::shm::WaitKey::kBacklogs, 0);
+    TellChanged(*t, tcs::shm::KernelObjectKind::kBacklogs, 0);
   }
   return connection;
 }

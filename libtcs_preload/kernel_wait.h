@@ -1,7 +1,7 @@
 // Calls in which the kernel itself may hold the thread, because only the kernel knows what they
 // wait for: locks of files, the other end of a FIFO. The shim tells the coordinator before such a
 // call, so that other threads get their turn at once. A thread that may have ended such a wait
-// tells the coordinator afterwards (TellKernelWaiters in keys.h).
+// tells the coordinator afterwards (TellKernelWaiters in kernel_objects.h).
 #pragma once
 
 #include <pthread.h>

@@ -14,8 +14,8 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/ipc_times.h"
+#include "libtcs_preload/kernel_objects.h"
 #include "libtcs_preload/kernel_wait.h"
-#include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/receipts.h"
 #include "libtcs_preload/user_memory.h"
@@ -24,8 +24,8 @@
 using namespace tcs::preload;
 using tcs::shm::IpcEvent;
 using tcs::shm::IpcKind;
+using tcs::shm::KernelObjectKind;
 using tcs::shm::NotificationKind;
-using tcs::shm::WaitKey;
 using tcs::shm::WakeReason;
 
 namespace {
@@ -34,7 +34,7 @@ constexpr int kWouldWait = 4096;              // no errno
 constexpr std::size_t kMostOperations = 500;  // the kernel's SEMOPM; above it says E2BIG
 
 // The object may be what those wait for whom the kernel holds, and those who wait here.
-void TellOfChange(GuestThread& t, WaitKey kind, int id) {
+void TellOfChange(GuestThread& t, KernelObjectKind kind, int id) {
   TellKernelWaiters(t);
   TellChanged(t, kind, id);
 }
@@ -43,7 +43,7 @@ void TellOfChange(GuestThread& t, WaitKey kind, int id) {
 // same call in the form that waits. What it reads and changes has a place in time, so nothing from
 // before may be missing.
 template <class AtOnce, class Waiting>
-long CallInKernel(GuestThread& t, WaitKey kind, int id, int blocks, bool cancellable,
+long CallInKernel(GuestThread& t, KernelObjectKind kind, int id, int blocks, bool cancellable,
                   AtOnce at_once, Waiting waiting) {
   HoldForRead(t);
   long result = at_once();
@@ -55,7 +55,7 @@ long CallInKernel(GuestThread& t, WaitKey kind, int id, int blocks, bool cancell
 // Makes `call`, which returns -`blocks` where it would have to wait, until it need not, or until
 // the deadline.
 template <class Call>
-long CallUntil(GuestThread& t, WaitKey kind, int id, int blocks, std::int64_t deadline_ns,
+long CallUntil(GuestThread& t, KernelObjectKind kind, int id, int blocks, std::int64_t deadline_ns,
                Call call) {
   HoldForRead(t);
   for (bool again = false;; again = true) {
@@ -65,7 +65,7 @@ long CallUntil(GuestThread& t, WaitKey kind, int id, int blocks, std::int64_t de
     if (result != -blocks) return result;
     if (IsShutDown()) return -EINTR;
     const Reply reply =
-        Exchange(t, Request{.kind = NotificationKind::kWaitKey,
+        Exchange(t, Request{.kind = NotificationKind::kWaitObject,
                             .deadline_ns = deadline_ns,
                             .args = {static_cast<std::int64_t>(kind), id, again ? 1 : 0},
                             .interruptible = true});
@@ -116,12 +116,12 @@ long Operate(GuestThread& t, int id, sembuf* operations, std::size_t count, cons
     return done == -EAGAIN && !(some && MustNotWait(id, operations, count)) ? -kWouldWait : done;
   };
   if (given == nullptr) {
-    return CallInKernel(t, WaitKey::kSemaphores, id, kWouldWait, false, probe, [&] {
+    return CallInKernel(t, KernelObjectKind::kSemaphores, id, kWouldWait, false, probe, [&] {
       return noted(RawSyscall(SYS_semop, id, Arg(operations), static_cast<long>(count)));
     });
   }
-  const long result =
-      CallUntil(t, WaitKey::kSemaphores, id, kWouldWait, DeadlineAfter(t, ToNs(timeout)), probe);
+  const long result = CallUntil(t, KernelObjectKind::kSemaphores, id, kWouldWait,
+                                DeadlineAfter(t, ToNs(timeout)), probe);
   return result == -kWouldWait ? -EAGAIN : result;
 }
 
@@ -169,11 +169,11 @@ TCS_EXPORT int semctl(int id, int number, int command, ...) noexcept {
     case SETVAL:
     case SETALL:
       NoteIpc(*t, IpcKind::kSemaphores, id, IpcEvent::kChanged);
-      TellOfChange(*t, WaitKey::kSemaphores, id);
+      TellOfChange(*t, KernelObjectKind::kSemaphores, id);
       break;
     case IPC_RMID:
       ForgetIpc(*t, IpcKind::kSemaphores, id);
-      TellOfChange(*t, WaitKey::kSemaphores, id);
+      TellOfChange(*t, KernelObjectKind::kSemaphores, id);
       break;
     default:
       break;
@@ -195,7 +195,7 @@ TCS_EXPORT int msgsnd(int id, const void* message, std::size_t size, int flags) 
     return sent;
   };
   return static_cast<int>(ToErrno(CallInKernel(
-      *t, WaitKey::kMessages, id, blocks, true, [&] { return send(flags | IPC_NOWAIT); },
+      *t, KernelObjectKind::kMessages, id, blocks, true, [&] { return send(flags | IPC_NOWAIT); },
       [&] { return send(flags); })));
 }
 
@@ -216,8 +216,8 @@ TCS_EXPORT ssize_t msgrcv(int id, void* message, std::size_t size, long type, in
     return got;
   };
   return ToErrno(CallInKernel(
-      *t, WaitKey::kMessages, id, blocks, true, [&] { return receive(flags | IPC_NOWAIT); },
-      [&] { return receive(flags); }));
+      *t, KernelObjectKind::kMessages, id, blocks, true,
+      [&] { return receive(flags | IPC_NOWAIT); }, [&] { return receive(flags); }));
 }
 
 TCS_EXPORT int msgctl(int id, int command, msqid_ds* buffer) noexcept {
@@ -231,6 +231,6 @@ TCS_EXPORT int msgctl(int id, int command, msqid_ds* buffer) noexcept {
   }
   if (command == IPC_SET) NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kChanged);
   if (command == IPC_RMID) ForgetIpc(*t, IpcKind::kMessages, id);
-  if (command == IPC_RMID || command == IPC_SET) TellOfChange(*t, WaitKey::kMessages, id);
+  if (command == IPC_RMID || command == IPC_SET) TellOfChange(*t, KernelObjectKind::kMessages, id);
   return static_cast<int>(ToErrno(result));
 }

@@ -16,7 +16,7 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
-#include "libtcs_preload/keys.h"
+#include "libtcs_preload/kernel_objects.h"
 #include "libtcs_preload/local_sockets.h"
 #include "libtcs_preload/outside.h"
 #include "libtcs_preload/own_receivers.h"
@@ -35,7 +35,7 @@ namespace {
 
 // A UNIX stream connects once its listener has room. That cannot be polled; those who accept say
 // that there is room again.
-constexpr auto kBacklogs = tcs::shm::WaitKey::kBacklogs;
+constexpr auto kBacklogs = tcs::shm::KernelObjectKind::kBacklogs;
 
 // TCP would keep what MSG_MORE announces more for until a timer of the host's runs out.
 int WithoutMore(int fd, int flags) {
@@ -72,7 +72,7 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
                           : TransferAll(*t, fd, POLLOUT, SO_SNDTIMEO, rest, WritePart, whole);
   if (result < 0 && NotesActivity()) TakeBackDatagram(*t, fd, nullptr, 0);
   if (result > 0 && AnybodyWaits() && IsTerminal(fd)) {
-    TellChanged(*t, tcs::shm::WaitKey::kTerminals, 0);
+    TellChanged(*t, tcs::shm::KernelObjectKind::kTerminals, 0);
   }
   if (result > 0) NoteAsks(*t, fd, ask);
   return ToErrno(result);
@@ -221,7 +221,7 @@ long ConnectLocally(GuestThread& t, int fd, const sockaddr* address, socklen_t s
   for (bool again = false;; again = true) {
     const long result = ConnectOnce(file.fd(), address, size);
     if (result != -EAGAIN || IsShutDown()) return result;
-    switch (file.WaitForKey(kBacklogs, deadline, again)) {
+    switch (file.WaitForObject(kBacklogs, deadline, again)) {
       case WaitResult::kRetry:
         break;
       case WaitResult::kTimedOut:

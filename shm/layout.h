@@ -89,11 +89,11 @@ enum class NotificationKind : std::uint32_t {
   kSignalled = 20,  // the thread has sent signal args[2] (0: unknown) to process args[0] (0: any),
                     // to its thread args[1] (0: to the process)
   kQueueNotifies = 21,  // a message queue will have the kernel send a signal: see queues_notify
-  kWaitKey = 22,  // sleep until a kernel object is changed, or deadline_ns; args[0]: a WaitKey,
-                  // args[1]: its number, args[2]: 1 to keep the place of the last such wait;
-                  // args[3]: 0, or 1 more than a descriptor whose file is kept as with
-                  // KeepFiles::kForCall; -1: what is kept already
-  kWakeKey = 23,  // the object of args[0] and args[1] has been changed
+  kWaitObject = 22,     // sleep until a kernel object is changed, or deadline_ns; args[0]: a
+                     // KernelObjectKind, args[1]: its number, args[2]: 1 to keep the place of the
+                     // last such wait; args[3]: 0, or 1 more than a descriptor whose file is kept
+                     // as with KeepFiles::kForCall; -1: what is kept already
+  kWakeObject = 23,    // the object of args[0] and args[1] has been changed
   kTimerOverrun = 24,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
                        // reply[0]: overruns of the signal accepted last
   // Of programs that speak DDS (dds_exchange.h).
@@ -172,7 +172,7 @@ enum class WhySockets : std::uint32_t {
 // Kernel objects that cannot be polled. Two are for waking only. kTerminals: what is written to one
 // end of a terminal reaches the other some time later, unless a thread polls. kKernelWaits: the
 // kernel may have let threads go on that it held.
-enum class WaitKey : std::uint32_t {
+enum class KernelObjectKind : std::uint32_t {
   kSemaphores = 1,
   kMessages = 2,
   kBacklogs = 3,
@@ -411,7 +411,7 @@ static_assert(offsetof(ThreadSlot, waits_in_call) == 1204);
 static_assert(offsetof(ThreadSlot, stopped_tsc) == 1208);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
-// and key_waiters and kernel_waiters.
+// and object_waiters and kernel_waiters.
 struct alignas(64) RunHeader {
   std::uint64_t magic;
   std::uint32_t version;
@@ -427,7 +427,7 @@ struct alignas(64) RunHeader {
   Sync sync;
   std::atomic<std::uint32_t> queues_notify;  // 1: a send to a message queue may send a signal
   std::atomic<std::uint32_t>
-      key_waiters;  // threads that kWakeKey may concern; if none it is spared
+      object_waiters;  // threads that kWakeObject may concern; if none it is spared
   std::atomic<std::uint32_t> kernel_waiters;  // the same for its kKernelWaits
   // 1: only their gates keep threads that are not dispatched from running on: each call that the
   // shim sees begins with kCall.

@@ -16,7 +16,7 @@ void AfterCalls::Do(Task& task, EventTime call, bool last) {
     case AfterCall::kNone:
       break;
     case AfterCall::kBacklogs:
-      objects_.Wake(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0, call);
+      objects_.Wake(static_cast<std::int64_t>(shm::KernelObjectKind::kBacklogs), 0, call);
       shared_events_.PassOn(task, call);
       break;
     case AfterCall::kTaken:

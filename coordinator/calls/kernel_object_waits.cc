@@ -39,11 +39,11 @@ void KernelObjectWaits::WaitInCall(Task& task, const KernelObject& object, Virtu
 }
 
 bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, EventTime when) {
-  if (kind == static_cast<std::int64_t>(shm::WaitKey::kTerminals)) {
+  if (kind == static_cast<std::int64_t>(shm::KernelObjectKind::kTerminals)) {
     FlushTerminals(when);
     return false;
   }
-  if (kind == static_cast<std::int64_t>(shm::WaitKey::kKernelWaits)) {
+  if (kind == static_cast<std::int64_t>(shm::KernelObjectKind::kKernelWaits)) {
     return LookAtKernelWaits(when);
   }
   const std::vector<WaitQueues::Thread> waiters = objects_.WaitersFor({.kind = kind, .id = id});

@@ -21,7 +21,7 @@ class KernelObjectWaits {
   KernelObjectWaits(RunState& run, Waker& waker, std::function<void(EventTime)> terminals_written)
       : run_(run), waker_(waker), terminals_written_(std::move(terminals_written)) {}
 
-  // As the notification kWaitKey says.
+  // As the notification kWaitObject says.
   void Wait(Task& task, const shm::Notification& note, VirtualTime deadline);
   // The same for a call made raw, which the kernel carries out once it need not wait.
   void WaitInCall(Task& task, const KernelObject& object, VirtualTime deadline);
@@ -30,8 +30,8 @@ class KernelObjectWaits {
   // It has ended.
   void Forget(const Task& task) { objects_.Forget(task.order); }
 
-  // Something of that kind (shm::WaitKey) has been done to the object. True if that has woken a
-  // thread.
+  // Something of that kind (shm::KernelObjectKind) has been done to the object. True if that has
+  // woken a thread.
   bool Wake(std::int64_t kind, std::int64_t id, EventTime when);
   // A process that ends may change any object: the kernel undoes what it did to semaphores.
   void WakeAll(EventTime when);

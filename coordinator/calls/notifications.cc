@@ -135,11 +135,11 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       parts_.signals.Sent(SentBy(run_, task, note), when);
       task.sending = {};
       break;
-    case Kind::kWaitKey:
+    case Kind::kWaitObject:
       parts_.objects.Wait(task, note, deadline);
       break;
-    case Kind::kWakeKey:
-      looks_again = note.args[0] == static_cast<std::int64_t>(shm::WaitKey::kTerminals);
+    case Kind::kWakeObject:
+      looks_again = note.args[0] == static_cast<std::int64_t>(shm::KernelObjectKind::kTerminals);
       // The kernel would have given those who wait what they wait for, before the waker could take
       // it again. So they go first, where its policy lets them.
       if (parts_.objects.Wake(note.args[0], note.args[1], when) &&

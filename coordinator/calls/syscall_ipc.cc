@@ -35,7 +35,8 @@ bool IsRefused(const RemoteDescriptor& queue, const TrappedCall& call) {
 KernelObject SyscallIpc::ObjectOf(const TrappedCall& call) {
   const bool is_queue =
       call.number == SYS_msgsnd || call.number == SYS_msgrcv || call.number == SYS_msgctl;
-  const shm::WaitKey kind = is_queue ? shm::WaitKey::kMessages : shm::WaitKey::kSemaphores;
+  const shm::KernelObjectKind kind =
+      is_queue ? shm::KernelObjectKind::kMessages : shm::KernelObjectKind::kSemaphores;
   return {.kind = static_cast<std::int64_t>(kind), .id = static_cast<int>(call.args[0])};
 }
 

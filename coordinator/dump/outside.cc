@@ -41,7 +41,7 @@ const char* WordsFor(shm::NotificationKind kind) {
       return "to wait for descriptors";
     case Kind::kWaitChild:
       return "to wait for a child";
-    case Kind::kWaitKey:
+    case Kind::kWaitObject:
       return "to wait for a System V object or a listener";
     case Kind::kDdsWait:
     case Kind::kDdsSync:

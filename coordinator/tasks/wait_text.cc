@@ -33,10 +33,10 @@ std::string KindOf(int fd) {
 }
 
 std::string TextOf(const KernelObject& object) {
-  if (object.kind == static_cast<std::int64_t>(shm::WaitKey::kSemaphores)) {
+  if (object.kind == static_cast<std::int64_t>(shm::KernelObjectKind::kSemaphores)) {
     return "for a System V semaphore";
   }
-  if (object.kind == static_cast<std::int64_t>(shm::WaitKey::kMessages)) {
+  if (object.kind == static_cast<std::int64_t>(shm::KernelObjectKind::kMessages)) {
     return "at a System V message queue";
   }
   return "for room in a listener's backlog";

@@ -116,8 +116,8 @@ void Waker::MoveDeadline(Task& task, VirtualTime to) {
 // So that those whom nobody waits for need not tell of what they do.
 void Waker::ShowObjectWaiters() {
   const auto waiters = static_cast<std::uint32_t>(counts_.for_objects());
-  if (run_.header->key_waiters.load(std::memory_order_relaxed) != waiters) {
-    run_.header->key_waiters.store(waiters);
+  if (run_.header->object_waiters.load(std::memory_order_relaxed) != waiters) {
+    run_.header->object_waiters.store(waiters);
   }
 }
 
