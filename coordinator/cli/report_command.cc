@@ -27,9 +27,9 @@ int ReportCommand(const ReportArguments& arguments) {
                           wants_distance ? report::Distance::kRead : report::Distance::kLeftOut);
   if (const auto* error = std::get_if<LoadError>(&read)) return Fail(error->message);
   const auto& results = std::get<report::Results>(read);
-  const report::MeasureWish wish{arguments.measures, arguments.against};
-  if (const std::string why = WhyNoMeasure(results, wish); !why.empty()) return Fail(why);
-  const report::Page page = report::MakePage(results, {arguments.title, arguments.marks, wish});
+  const report::MeasureRequest request{arguments.measures, arguments.against};
+  if (const std::string why = WhyNoMeasure(results, request); !why.empty()) return Fail(why);
+  const report::Page page = report::MakePage(results, {arguments.title, arguments.marks, request});
   for (const std::string& warning : page.warnings) {
     Say("warning: " + warning);
   }

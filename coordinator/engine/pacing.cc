@@ -23,18 +23,18 @@ Pacing::Pacing(const RunOptions& options, VirtualTime end,
       notice_(std::move(notice)),
       is_on_(options.pace > 0 || options.starts_standing || options.view != nullptr) {}
 
-void Pacing::TakeWishes(HostTime now) {
-  const auto wishes = view_->Take();
-  if (!wishes) return;
+void Pacing::TakeControlRequests(HostTime now) {
+  const auto asked = view_->Take();
+  if (!asked) return;
   next_tell_ = now;
-  if (wishes->step_ns > 0) {
-    pacer_.StepBy(VirtualNs(wishes->step_ns), now);
-  } else if (!wishes->stands) {
+  if (asked->step_ns > 0) {
+    pacer_.StepBy(VirtualNs(asked->step_ns), now);
+  } else if (!asked->stands) {
     pacer_.GoOn(now);
-  } else if (wishes->pace == pacer_.pace()) {
+  } else if (asked->pace == pacer_.pace()) {
     pacer_.Stand(now);
   }
-  if (wishes->pace != pacer_.pace()) pacer_.SetPace(wishes->pace, now);
+  if (asked->pace != pacer_.pace()) pacer_.SetPace(asked->pace, now);
 }
 
 // Nobody could let the run go on any more.
@@ -52,7 +52,7 @@ void Pacing::LookAtServer(HostTime now) {
 HostDuration Pacing::ToWait(VirtualTime next) {
   const HostTime now = RunClock::Now();
   if (!begun_.has_value()) begun_ = now;
-  if (view_ != nullptr && !is_orphaned_) TakeWishes(now);
+  if (view_ != nullptr && !is_orphaned_) TakeControlRequests(now);
   const HostDuration wait = pacer_.ToWait(next, now);
   const bool waits = wait > HostDuration();
   if (held_since_.has_value()) held_ += now - *held_since_;

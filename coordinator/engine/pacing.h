@@ -38,7 +38,7 @@ class Pacing {
   PaceReport Report() const;
 
  private:
-  void TakeWishes(HostTime now);
+  void TakeControlRequests(HostTime now);
   void LookAtServer(HostTime now);
 
   Pacer pacer_;

@@ -205,17 +205,17 @@ class PlotMaker {
 
 }  // namespace
 
-std::vector<MeasurePlotData> MeasurePlots(const Results& results, const MeasureWish& wish) {
+std::vector<MeasurePlotData> MeasurePlots(const Results& results, const MeasureRequest& request) {
   const std::vector<Varied> all = AllVaried(results);
   if (all.empty()) return {};
   std::vector<std::string> keys;
-  if (wish.against.empty()) {
+  if (request.against.empty()) {
     keys = ChosenKeys(all);
   } else {
-    keys.push_back(FindName(wish.against, KeysOf(all), "varied key").name);
+    keys.push_back(FindName(request.against, KeysOf(all), "varied key").name);
   }
   std::vector<std::string> measures;
-  for (const std::string& name : wish.measures) {
+  for (const std::string& name : request.measures) {
     measures.push_back(FindName(name, MeasureNames(all), "measure").name);
   }
   if (measures.empty()) measures = ChosenMeasures(all);
@@ -229,18 +229,18 @@ std::vector<MeasurePlotData> MeasurePlots(const Results& results, const MeasureW
   return plots;
 }
 
-std::string WhyNoMeasure(const Results& results, const MeasureWish& wish) {
-  if (wish.measures.empty() && wish.against.empty()) return {};
+std::string WhyNoMeasure(const Results& results, const MeasureRequest& request) {
+  if (request.measures.empty() && request.against.empty()) return {};
   const std::vector<Varied> all = AllVaried(results);
   if (all.empty()) {
     return "--measure and --against are for trials in which something was varied (tcsim trials "
            "--vary KEY=V1,V2); these folders have none";
   }
-  if (!wish.against.empty()) {
-    const auto found = FindName(wish.against, KeysOf(all), "varied key");
+  if (!request.against.empty()) {
+    const auto found = FindName(request.against, KeysOf(all), "varied key");
     if (!found.why_not.empty()) return "--against: " + found.why_not;
   }
-  for (const std::string& name : wish.measures) {
+  for (const std::string& name : request.measures) {
     const auto found = FindName(name, MeasureNames(all), "measure");
     if (!found.why_not.empty()) return "--measure: " + found.why_not;
   }

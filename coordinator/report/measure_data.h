@@ -13,7 +13,7 @@
 namespace tcs::report {
 
 // What a user asked for; empty where tcs is to choose.
-struct MeasureWish {
+struct MeasureRequest {
   std::vector<std::string> measures;
   std::string against;
 };
@@ -49,13 +49,13 @@ struct MeasurePlotData {
   std::optional<double> deadline;  // of response times, if all trials had the same
 };
 
-// One for each measure wished for, or chosen: shares of missed deadlines of those who missed most,
-// else the greatest response times; against the key wished for, or else each sweep's, and of a grid
+// One for each measure asked for, or chosen: shares of missed deadlines of those who missed most,
+// else the greatest response times; against the key asked for, or else each sweep's, and of a grid
 // the processor's speed or the key with the most values. Empty where nothing was varied.
 [[nodiscard]] std::vector<MeasurePlotData> MeasurePlots(const Results& results,
-                                                        const MeasureWish& wish);
+                                                        const MeasureRequest& request);
 
-// Why a wish cannot be met; empty if it can.
-[[nodiscard]] std::string WhyNoMeasure(const Results& results, const MeasureWish& wish);
+// Why a request cannot be met; empty if it can.
+[[nodiscard]] std::string WhyNoMeasure(const Results& results, const MeasureRequest& request);
 
 }  // namespace tcs::report

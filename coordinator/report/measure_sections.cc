@@ -150,9 +150,9 @@ std::string NoteOf(const MeasurePlotData& data) {
 
 }  // namespace
 
-std::vector<MeasureParts> MeasureSections(const Results& results, const MeasureWish& wish) {
+std::vector<MeasureParts> MeasureSections(const Results& results, const MeasureRequest& request) {
   std::vector<MeasureParts> all;
-  for (const MeasurePlotData& data : MeasurePlots(results, wish)) {
+  for (const MeasurePlotData& data : MeasurePlots(results, request)) {
     const std::string title =
         fmt::format("{} against {}", Headed(MeasureWords(data.measure)), data.against);
     const Table table = TableOf(data);

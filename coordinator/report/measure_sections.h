@@ -16,6 +16,6 @@ struct MeasureParts {
 };
 
 [[nodiscard]] std::vector<MeasureParts> MeasureSections(const Results& results,
-                                                        const MeasureWish& wish);
+                                                        const MeasureRequest& request);
 
 }  // namespace tcs::report

@@ -171,7 +171,7 @@ class Builder {
   }
 
   void AddMeasures() {
-    for (const MeasureParts& parts : MeasureSections(results_, options_.wish)) {
+    for (const MeasureParts& parts : MeasureSections(results_, options_.measures)) {
       AddFigure(parts.figure, parts.table);
       page_.text += (page_.text.empty() ? "" : "\n") + parts.text;
     }

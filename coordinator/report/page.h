@@ -13,7 +13,7 @@ namespace tcs::report {
 struct PageOptions {
   std::string title;          // empty: the scenario's name
   std::vector<double> marks;  // distances that figures mark, in metres
-  MeasureWish wish;           // measures against varied keys
+  MeasureRequest measures;    // measures against varied keys
 };
 
 struct Page {

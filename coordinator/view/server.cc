@@ -20,7 +20,7 @@
 #include "coordinator/report/read_results.h"
 #include "coordinator/report/text.h"
 #include "coordinator/text/csv.h"
-#include "coordinator/view/wish.h"
+#include "coordinator/view/control_request.h"
 
 namespace tcs {
 
@@ -102,8 +102,8 @@ std::string ViewServer::Bind(const std::string& address, int port) {
   std::string token = MakeToken();
   if (token.empty())
     return "the kernel has no random numbers to give, so the page would have no secret address";
-  admission_ = std::make_unique<Admission>(std::move(token), address, bound);
-  url_ = admission_->url();
+  auth_ = std::make_unique<Auth>(std::move(token), address, bound);
+  url_ = auth_->url();
   Route();
   return {};
 }
@@ -122,14 +122,14 @@ void ViewServer::Route() {
   http_->set_pre_routing_handler(
       [this](const httplib::Request& request, httplib::Response& answer) {
         const bool names_one_host = request.get_header_value_count("Host") == 1;
-        const auto rest = admission_->Admit({.path = request.path,
-                                             .host = request.get_header_value("Host"),
-                                             .origin = request.get_header_value("Origin")});
+        const auto rest = auth_->Authorize({.path = request.path,
+                                            .host = request.get_header_value("Host"),
+                                            .origin = request.get_header_value("Origin")});
         if (!names_one_host || !rest) {
           answer.status = kRefused;
           return httplib::Server::HandlerResponse::Handled;
         }
-        if (request.method == "POST" && *rest == "wish")
+        if (request.method == "POST" && *rest == "control")
           return httplib::Server::HandlerResponse::Unhandled;
         if (request.method == "GET" && *rest == "") {
           GivePage(answer);
@@ -141,7 +141,7 @@ void ViewServer::Route() {
         return httplib::Server::HandlerResponse::Handled;
       });
   http_->Post("/.*", [this](const httplib::Request& request, httplib::Response& answer) {
-    TakeWish(request, answer);
+    TakeControlRequest(request, answer);
   });
 }
 
@@ -219,18 +219,18 @@ void ViewServer::GiveNews(const httplib::Request& request, httplib::Response& an
   if (has_ended && told_.load() == Clock::time_point{}) told_ = Clock::now();
 }
 
-void ViewServer::TakeWish(const httplib::Request& request, httplib::Response& answer) {
+void ViewServer::TakeControlRequest(const httplib::Request& request, httplib::Response& answer) {
   if (control_ == nullptr || HasEnded()) {
     answer.status = kConflict;
     return;
   }
-  const auto wish = ParseWish(request.body);
-  if (!wish) {
+  const auto asked = ParseControlRequest(request.body);
+  if (!asked) {
     answer.status = kNotUnderstood;
     return;
   }
   const std::scoped_lock lock(mutex_);
-  Ask(*wish, control_);
+  Ask(*asked, control_);
   Give(answer, Status().dump(), "application/json");
 }
 

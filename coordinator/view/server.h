@@ -13,7 +13,7 @@
 #include <string>
 
 #include "coordinator/report/live_run.h"
-#include "coordinator/view/admission.h"
+#include "coordinator/view/auth.h"
 #include "coordinator/view/control_page.h"
 
 namespace httplib {
@@ -43,7 +43,7 @@ class ViewServer {
   void Route();
   void GivePage(httplib::Response& answer);
   void GiveNews(const httplib::Request& request, httplib::Response& answer);
-  void TakeWish(const httplib::Request& request, httplib::Response& answer);
+  void TakeControlRequest(const httplib::Request& request, httplib::Response& answer);
   void LookAtRun();
   bool HasEnded() const;
   nlohmann::ordered_json Status() const;
@@ -52,7 +52,7 @@ class ViewServer {
   const std::string folder_;
   ControlPage* const control_;
   const std::unique_ptr<httplib::Server> http_;
-  std::unique_ptr<Admission> admission_;
+  std::unique_ptr<Auth> auth_;
   std::string url_;
   const Clock::time_point begun_ = Clock::now();
 

@@ -29,17 +29,17 @@ void ViewLink::Begin(double pace, bool stands) {
   page_->stands.store(stands ? 1 : 0);
 }
 
-std::optional<ViewLink::Wishes> ViewLink::Take() {
+std::optional<ViewLink::ControlRequests> ViewLink::Take() {
   const std::uint32_t asked = page_->asked.load(std::memory_order_acquire);
   if (asked == asked_) return {};
   asked_ = asked;
   const double pace = page_->pace.load();
   const std::int64_t stepped_ns = page_->stepped_ns.load();
-  Wishes wishes{.pace = std::isfinite(pace) ? std::clamp(pace, 0.0, kMostPace) : 0,
-                .stands = page_->stands.load() != 0,
-                .step_ns = std::max<std::int64_t>(0, stepped_ns - stepped_ns_)};
+  ControlRequests asked{.pace = std::isfinite(pace) ? std::clamp(pace, 0.0, kMostPace) : 0,
+                        .stands = page_->stands.load() != 0,
+                        .step_ns = std::max<std::int64_t>(0, stepped_ns - stepped_ns_)};
   stepped_ns_ = std::max(stepped_ns_, stepped_ns);
-  return wishes;
+  return asked;
 }
 
 void ViewLink::Tell(const Status& status) {

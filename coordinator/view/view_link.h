@@ -17,7 +17,7 @@ namespace tcs {
 
 class ViewLink {
  public:
-  struct Wishes {
+  struct ControlRequests {
     double pace = 0;
     bool stands = false;
     std::int64_t step_ns = 0;  // since the last time; 0: none
@@ -39,7 +39,7 @@ class ViewLink {
   // How the run begins. Before anybody is told the address: it would undo what they ask for.
   void Begin(double pace, bool stands);
   // What is wanted now; none where nothing was asked for since the last time.
-  std::optional<Wishes> Take();
+  std::optional<ControlRequests> Take();
   void Tell(const Status& status);
   // True once the server has ended. A system call.
   bool IsGone() const;

@@ -79,9 +79,9 @@ class LiveRun:
     def status(self):
         return self.news()["status"]
 
-    def wish(self, words):
+    def control(self, words):
         """Returns once the run has taken it. Not for what may let it go to its end: nobody would say so any more."""
-        status, content = self.ask("wish", words.encode())
+        status, content = self.ask("control", words.encode())
         assert status == 200, (words, status)
         asked = json.loads(content)["asked"]
         return self.until(lambda: (now := self.status())["taken"] >= asked and now)
@@ -92,7 +92,7 @@ class LiveRun:
     def tell(self, words):
         """For what may let it go to its end, with which its server goes: the answer may not come."""
         try:
-            status, _ = self.ask("wish", words.encode())
+            status, _ = self.ask("control", words.encode())
             assert status in (200, 409), (words, status)  # 409: it has ended
         except (OSError, http.client.HTTPException):
             pass

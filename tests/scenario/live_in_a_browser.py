@@ -186,7 +186,7 @@ def is_shown_again(browser):
     shown.terminate()
     shown.wait()
     with LiveRun(TCSIM, SCENARIO, f"{OUT}/again", "--duration", "2s", "--pause") as run:
-        run.wish(f"step {500 * MS}")
+        run.control(f"step {500 * MS}")
         run.stands_at(500 * MS)
         shown = subprocess.Popen([TCSIM, "view", f"{OUT}/again"], stderr=subprocess.PIPE, text=True)
         url = re.search(r"http://\S+/", shown.stderr.readline())[0]

@@ -53,18 +53,18 @@ def hosts(run):
 def origins(run):
     for origin in ("http://evil.example", "null", f"http://127.0.0.1:{run.port + 1}", f"https://127.0.0.1:{run.port}",
                    f"http://localhost:{run.port}"):
-        refused(run, {"rest": "wish", "body": b"go", "headers": {"Origin": origin}})
+        refused(run, {"rest": "control", "body": b"go", "headers": {"Origin": origin}})
         refused(run, {"rest": "news", "headers": {"Origin": origin}})
     own = {"Origin": f"http://127.0.0.1:{run.port}"}
-    assert run.ask("wish", b"stand", headers=own)[0] == 200
+    assert run.ask("control", b"stand", headers=own)[0] == 200
 
 
 def garbage(run):
     for words in (b"", b"go away", b"step", b"step -1", b"step 9999999999999999999", b"pace nan", b"\x00\xff", b"step 1;go"):
-        status, content = run.ask("wish", words)
+        status, content = run.ask("control", words)
         assert status == 400 and content == b"", (words, status)
-    assert run.ask("wish", b"x" * 257)[0] == 413
-    assert run.ask("wish", b"go" * 500_000)[0] == 413
+    assert run.ask("control", b"x" * 257)[0] == 413
+    assert run.ask("control", b"go" * 500_000)[0] == 413
     for what in ({"rest": "nothing"}, {"rest": "../news"}, {"rest": "news", "method": "DELETE"}, {"rest": "", "method": "PUT"}):
         refused(run, what, 404)
     requests = (b"\r\n\r\n", b"GET\r\n\r\n", b"\x16\x03\x01\x02\x00" * 100, b"GET / HTTP/9.9\r\n\r\n",

@@ -51,22 +51,22 @@ def steps():
         assert to["moments"] <= 1 and to["slices"] == 0, ("something happened before the start", to)
         at = 0
         for step in (100 * MS, 37 * MS, 1, 12_345_678, 3 * MS):
-            run.wish(f"step {step}")
+            run.control(f"step {step}")
             at += step
             run.stands_at(at)
             assert latest_turn(run) <= at
         # What happens at that very moment has happened: a line each 10 ms.
-        run.wish(f"step {10 * MS - at % (10 * MS)}")
+        run.control(f"step {10 * MS - at % (10 * MS)}")
         at += 10 * MS - at % (10 * MS)
         run.stands_at(at)
         run.until(lambda: last_moment(run) == at / 1e9)
         # A step in the middle of another one adds to it.
-        run.ask("wish", b"pace 0.25")
+        run.ask("control", b"pace 0.25")
         for _ in range(3):
-            assert run.ask("wish", f"step {20 * MS}".encode())[0] == 200
+            assert run.ask("control", f"step {20 * MS}".encode())[0] == 200
         at += 60 * MS
         run.stands_at(at)
-        run.wish("pace 0")
+        run.control("pace 0")
         time.sleep(6)  # longer than a standstill is borne in silence
         assert run.status()["now"] == at
         run.tell("go")
@@ -82,20 +82,20 @@ def pauses():
     with start("pauses", "--pace", "0.05") as run:
         before = -1
         for pace in ("0.05", "0.02", "0.1"):
-            assert run.wish(f"pace {pace}")["pace"] == float(pace)
+            assert run.control(f"pace {pace}")["pace"] == float(pace)
             run.until(lambda: run.status()["now"] > before)
-            run.wish("stand")
+            run.control("stand")
             stands = run.until(lambda: (now := run.status())["stage"] == "stands" and now)["now"]
             assert stands > before
             before = stands
             time.sleep(0.1)
             assert run.status()["now"] == stands
-            run.wish("go")
-        run.wish("stand")
+            run.control("go")
+        run.control("stand")
         at = run.until(lambda: (now := run.status())["stage"] == "stands" and now)["now"]
         for pace in ("5", "1000", "0"):
-            run.wish(f"pace {pace}")
-            run.wish(f"step {50 * MS}")
+            run.control(f"pace {pace}")
+            run.control(f"step {50 * MS}")
             at += 50 * MS
             run.stands_at(at)
         # As fast as it can, it may hear the second of these on its way, or not at all.
@@ -134,7 +134,7 @@ def a_dead_server():
 def an_end_while_it_stands():
     for number in (signal.SIGINT, signal.SIGTERM):
         with start("ended", "--pause") as run:
-            run.wish(f"step {200 * MS}")
+            run.control(f"step {200 * MS}")
             run.stands_at(200 * MS)
             run.process.send_signal(number)
             run.end(128 + number)
@@ -160,7 +160,7 @@ def computing_is_charged():
                    f"robots: {{b: {{clients: {{c: {{command: [python3, -c, {json.dumps(COMPUTES)}]}}}}}}}}\n")
     with LiveRun(TCSIM, f"{OUT}/computes.yaml", f"{OUT}/computes", "--pause", accounting="measured") as run:
         for _ in range(12):  # no more than the program sleeps alone: it has not ended then
-            assert run.wish(f"step {50 * MS}")["stage"] != "ended"
+            assert run.control(f"step {50 * MS}")["stage"] != "ended"
             time.sleep(0.1)
         run.tell("go")
         run.end()

@@ -31,7 +31,7 @@ def holder():
 
 with LiveRun(tcsim, f"{out}/s.yaml", f"{out}/paused", "--pause") as run:
     run.stands_at(0)
-    run.wish("step 300000000")
+    run.control("step 300000000")
     run.stands_at(300_000_000)
     other = holder()
     run.tell("go")

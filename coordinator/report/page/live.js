@@ -91,7 +91,7 @@
 
   async function want(words) {
     try {
-      await fetch('wish', {method: 'POST', headers: {'Content-Type': 'text/plain'}, body: words});
+      await fetch('control', {method: 'POST', headers: {'Content-Type': 'text/plain'}, body: words});
       await ask();
     } catch (error) {
       how.textContent = 'The run could not be asked for that: nobody answers.';

@@ -140,7 +140,7 @@ TEST_F(MeasureTest, TheSentenceSaysFromWhereOnNobodyIsLate) {
   }
 }
 
-TEST_F(MeasureTest, AWishThatCannotBeMetIsSaid) {
+TEST_F(MeasureTest, ARequestThatCannotBeMetIsSaid) {
   WriteSweep();
   const Results results = Read("sweep");
   EXPECT_EQ(WhyNoMeasure(results, {{"planner.misses"}, "cpu.speed"}), "");

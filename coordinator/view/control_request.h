@@ -10,16 +10,16 @@
 
 namespace tcs {
 
-struct Wish {
+struct ControlRequest {
   enum class Kind { kStand, kGo, kStep, kPace } kind = Kind::kGo;
   std::int64_t step_ns = 0;
   double pace = 0;
 };
 
 // None where it is none: steps are 1 ns to an hour, paces 0.001 to 1000, or 0.
-[[nodiscard]] std::optional<Wish> ParseWish(std::string_view words);
+[[nodiscard]] std::optional<ControlRequest> ParseControlRequest(std::string_view words);
 
 // Notes it for the run. One at a time.
-void Ask(const Wish& wish, ControlPage* page);
+void Ask(const ControlRequest& asked, ControlPage* page);
 
 }  // namespace tcs

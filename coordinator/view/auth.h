@@ -16,7 +16,7 @@ namespace tcs {
 // 128 bits of the kernel's, in 32 hexadecimal digits. Empty if it has none to give.
 [[nodiscard]] std::string MakeToken();
 
-class Admission {
+class Auth {
  public:
   // What is said of a request. Origin: empty if the browser, or another program, sends none.
   struct Request {
@@ -25,10 +25,10 @@ class Admission {
   };
 
   // It listens at `address`, a number, at that port.
-  Admission(std::string token, std::string address, int port);
+  Auth(std::string token, std::string address, int port);
 
   // The part of the path behind the token; none where the request is refused.
-  [[nodiscard]] std::optional<std::string_view> Admit(const Request& request) const;
+  [[nodiscard]] std::optional<std::string_view> Authorize(const Request& request) const;
 
   // "http://127.0.0.1:40000/0123.../".
   [[nodiscard]] std::string url() const;

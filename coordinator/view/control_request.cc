@@ -1,4 +1,4 @@
-#include "coordinator/view/wish.h"
+#include "coordinator/view/control_request.h"
 
 #include <charconv>
 #include <system_error>
@@ -22,27 +22,27 @@ std::optional<Number> NumberAfter(std::string_view word, std::string_view words)
 
 }  // namespace
 
-std::optional<Wish> ParseWish(std::string_view words) {
-  if (words == "stand") return Wish{.kind = Wish::Kind::kStand};
-  if (words == "go") return Wish{.kind = Wish::Kind::kGo};
+std::optional<ControlRequest> ParseControlRequest(std::string_view words) {
+  if (words == "stand") return ControlRequest{.kind = ControlRequest::Kind::kStand};
+  if (words == "go") return ControlRequest{.kind = ControlRequest::Kind::kGo};
   if (const auto ns = NumberAfter<std::int64_t>("step ", words);
       ns && *ns >= 1 && *ns <= kLongestStepNs) {
-    return Wish{.kind = Wish::Kind::kStep, .step_ns = *ns};
+    return ControlRequest{.kind = ControlRequest::Kind::kStep, .step_ns = *ns};
   }
   if (const auto pace = NumberAfter<double>("pace ", words);
       pace && (*pace == 0 || (*pace >= kLeastPace && *pace <= kMostPace))) {
-    return Wish{.kind = Wish::Kind::kPace, .pace = *pace};
+    return ControlRequest{.kind = ControlRequest::Kind::kPace, .pace = *pace};
   }
   return {};
 }
 
-void Ask(const Wish& wish, ControlPage* page) {
-  if (wish.kind == Wish::Kind::kPace) {
-    page->pace.store(wish.pace);
+void Ask(const ControlRequest& asked, ControlPage* page) {
+  if (asked.kind == ControlRequest::Kind::kPace) {
+    page->pace.store(asked.pace);
   } else {
-    page->stands.store(wish.kind == Wish::Kind::kGo ? 0 : 1);
+    page->stands.store(asked.kind == ControlRequest::Kind::kGo ? 0 : 1);
   }
-  if (wish.kind == Wish::Kind::kStep) page->stepped_ns.fetch_add(wish.step_ns);
+  if (asked.kind == ControlRequest::Kind::kStep) page->stepped_ns.fetch_add(asked.step_ns);
   page->asked.fetch_add(1, std::memory_order_release);
 }
 

@@ -1,4 +1,4 @@
-#include "coordinator/view/admission.h"
+#include "coordinator/view/auth.h"
 
 #include <arpa/inet.h>
 #include <sys/random.h>
@@ -49,13 +49,13 @@ std::string MakeToken() {
   return token;
 }
 
-Admission::Admission(std::string token, std::string address, int port)
+Auth::Auth(std::string token, std::string address, int port)
     : token_(std::move(token)),
       address_(std::move(address)),
       port_(std::to_string(port)),
       is_loopback_(IsLoopback(address_)) {}
 
-std::string Admission::url() const {
+std::string Auth::url() const {
   const bool is_any = address_ == "0.0.0.0" || address_ == "::";
   return "http://" + (is_any ? "localhost" : Bracketed(address_)) + ":" + port_ + "/" + token_ +
          "/";
@@ -63,7 +63,7 @@ std::string Admission::url() const {
 
 // A name may be made to stand for this machine by whoever owns it (DNS rebinding); a number is what
 // it is. What listens on this machine alone is asked for by its numbers alone.
-bool Admission::IsOurHost(std::string_view host) const {
+bool Auth::IsOurHost(std::string_view host) const {
   const std::size_t colon = host.rfind(':');
   if (colon == host.npos || host.substr(colon + 1) != port_) return false;
   std::string name(host.substr(0, colon));
@@ -72,12 +72,12 @@ bool Admission::IsOurHost(std::string_view host) const {
   return IsNumber(name) && (!is_loopback_ || IsLoopback(name));
 }
 
-bool Admission::IsOurOrigin(std::string_view origin, std::string_view host) const {
+bool Auth::IsOurOrigin(std::string_view origin, std::string_view host) const {
   constexpr std::string_view kScheme = "http://";
   return origin.starts_with(kScheme) && origin.substr(kScheme.size()) == host;
 }
 
-std::optional<std::string_view> Admission::Admit(const Request& request) const {
+std::optional<std::string_view> Auth::Authorize(const Request& request) const {
   if (!IsOurHost(request.host)) return {};
   // A browser names the origin of whatever changes something.
   if (!request.origin.empty() && !IsOurOrigin(request.origin, request.host)) return {};

@@ -1,4 +1,4 @@
-#include "coordinator/view/wish.h"
+#include "coordinator/view/control_request.h"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -12,15 +12,15 @@
 namespace tcs {
 namespace {
 
-TEST(WishTest, WordsAreWishes) {
-  EXPECT_EQ(ParseWish("stand")->kind, Wish::Kind::kStand);
-  EXPECT_EQ(ParseWish("go")->kind, Wish::Kind::kGo);
-  EXPECT_EQ(ParseWish("step 10000000")->step_ns, 10'000'000);
-  EXPECT_EQ(ParseWish("pace 0.5")->pace, 0.5);
-  EXPECT_EQ(ParseWish("pace 0")->pace, 0);
+TEST(ControlRequestTest, WordsAreRequests) {
+  EXPECT_EQ(ParseControlRequest("stand")->kind, ControlRequest::Kind::kStand);
+  EXPECT_EQ(ParseControlRequest("go")->kind, ControlRequest::Kind::kGo);
+  EXPECT_EQ(ParseControlRequest("step 10000000")->step_ns, 10'000'000);
+  EXPECT_EQ(ParseControlRequest("pace 0.5")->pace, 0.5);
+  EXPECT_EQ(ParseControlRequest("pace 0")->pace, 0);
 }
 
-TEST(WishTest, GarbageIsNone) {
+TEST(ControlRequestTest, GarbageIsNone) {
   for (const char* words : {"",
                             "Stand",
                             "stand ",
@@ -42,7 +42,7 @@ TEST(WishTest, GarbageIsNone) {
                             "pace 1x",
                             "\xff\xfe",
                             "{\"step\":1}"}) {
-    EXPECT_FALSE(ParseWish(words)) << words;
+    EXPECT_FALSE(ParseControlRequest(words)) << words;
   }
 }
 
@@ -70,23 +70,23 @@ TEST_F(ViewLinkTest, NothingIsTakenThatNobodyAskedFor) {
 
 TEST_F(ViewLinkTest, WhatIsAskedForIsTakenOnce) {
   link_.Begin(1, true);
-  Ask(*ParseWish("go"), page_);
-  const auto wishes = link_.Take();
-  ASSERT_TRUE(wishes);
-  EXPECT_FALSE(wishes->stands);
-  EXPECT_EQ(wishes->pace, 1);
-  EXPECT_EQ(wishes->step_ns, 0);
+  Ask(*ParseControlRequest("go"), page_);
+  const auto asked = link_.Take();
+  ASSERT_TRUE(asked);
+  EXPECT_FALSE(asked->stands);
+  EXPECT_EQ(asked->pace, 1);
+  EXPECT_EQ(asked->step_ns, 0);
   EXPECT_FALSE(link_.Take());
 }
 
 TEST_F(ViewLinkTest, StepsThatComeBetweenTwoLooksAddUp) {
-  Ask(*ParseWish("step 10"), page_);
-  Ask(*ParseWish("step 5"), page_);
-  const auto wishes = link_.Take();
-  ASSERT_TRUE(wishes);
-  EXPECT_TRUE(wishes->stands);
-  EXPECT_EQ(wishes->step_ns, 15);
-  Ask(*ParseWish("step 7"), page_);
+  Ask(*ParseControlRequest("step 10"), page_);
+  Ask(*ParseControlRequest("step 5"), page_);
+  const auto asked = link_.Take();
+  ASSERT_TRUE(asked);
+  EXPECT_TRUE(asked->stands);
+  EXPECT_EQ(asked->step_ns, 15);
+  Ask(*ParseControlRequest("step 7"), page_);
   EXPECT_EQ(link_.Take()->step_ns, 7);
 }
 
@@ -95,11 +95,11 @@ TEST_F(ViewLinkTest, AServerThatErrsAsksForNothingImpossible) {
     page_->pace.store(pace);
     page_->stepped_ns.store(-5);
     page_->asked.fetch_add(1);
-    const auto wishes = link_.Take();
-    ASSERT_TRUE(wishes);
-    EXPECT_GE(wishes->pace, 0);
-    EXPECT_LE(wishes->pace, 1000);
-    EXPECT_EQ(wishes->step_ns, 0);
+    const auto asked = link_.Take();
+    ASSERT_TRUE(asked);
+    EXPECT_GE(asked->pace, 0);
+    EXPECT_LE(asked->pace, 1000);
+    EXPECT_EQ(asked->step_ns, 0);
   }
 }
 
