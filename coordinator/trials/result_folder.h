@@ -13,7 +13,7 @@ struct ResultFolder {
   FolderLock lock;              // one `tcsim trials` at a time
   bool has_trials = false;      // of an earlier call, which this one goes on with
   std::string changed_program;  // since those; empty if none is known to have changed
-  // Of Slurm, that an earlier call has left (slurm/work_folder.h). They can change nothing any
+  // Of Slurm, that an earlier call has left (slurm_folder.h). They can change nothing any
   // more.
   std::vector<std::string> left_jobs;
 };

@@ -1,6 +1,6 @@
 // Runs trials as jobs of a cluster that Slurm manages. The folder of the results is on a file
 // system that all nodes share; the jobs find their work there, and leave their results
-// (work_folder.h).
+// (slurm_folder.h).
 //
 // Jobs take one trial after the other, so that short trials do not each pay for a job's start, and
 // a sweep has any number of trials, whatever the largest array is. The launcher looks at the folder
