@@ -52,7 +52,7 @@ HostDuration BriefSleep(const Task& task, int looks) {
 }
 
 // What the thread may compute once it is back from the kernel.
-HostDuration AfterCall(const Task& task) { return MakesThread(task) ? HostDuration() : kBrief / 2; }
+HostDuration BriefTime(const Task& task) { return MakesThread(task) ? HostDuration() : kBrief / 2; }
 
 }  // namespace
 
@@ -129,7 +129,7 @@ bool Dispatcher::HasMadeCall(Task& task, int* turns) {
   }
   if (task.brief_id != 0 && !HasAnswerToTake(task.trap_listener, task.brief_id)) {
     task.brief_id = 0;
-    task.brief_until = HostNs(HostClockOf(task)) + AfterCall(task);
+    task.brief_until = HostNs(HostClockOf(task)) + BriefTime(task);
   }
   return false;
 }
@@ -247,7 +247,7 @@ void Dispatcher::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_unt
     if (all_.spins.IsToBeAsked(task)) AskWhere(task.process->pid, task.tid);
   }
   if (task.trap_id != 0) task.brief_id = task.trap_id;
-  if (task.is_brief) task.brief_until = HostNs(HostClockOf(task)) + AfterCall(task);
+  if (task.is_brief) task.brief_until = HostNs(HostClockOf(task)) + BriefTime(task);
   Resume(task);
   run_.turn.recorded_tsc = all_.host_cpu.stop_tsc();
   all_.state_link.Dispatched(task.tid, all_.host_cpu.stop_tsc(), task.cpu->progress.ns());

@@ -14,7 +14,7 @@ constexpr HostDuration kUnseenPoll = HostDuration::Milliseconds(1);
 constexpr HostDuration kDebuggerPoll = HostDuration::Milliseconds(10);
 
 constexpr HostDuration kOutsidePoll = HostDuration::Milliseconds(200);
-constexpr int kExitTurns = 25;  // of kOutsidePoll
+constexpr int kAwaitTurns = 25;  // of kOutsidePoll
 
 }  // namespace
 
@@ -46,7 +46,7 @@ bool IdleTime::AwaitExits() {
   const auto is_dead = [this](const Process& process) {
     return process.dead || (process.robot->is_ours && !run_.IsInGrace());
   };
-  for (int turn = 0; turn < kExitTurns && Living() == 0 && !all_.launches.AreAhead(); ++turn) {
+  for (int turn = 0; turn < kAwaitTurns && Living() == 0 && !all_.launches.AreAhead(); ++turn) {
     const bool all_dead =
         std::all_of(run_.table.processes().begin(), run_.table.processes().end(), is_dead);
     if (all_dead || all_.grace.IsOver() || (run_.stop.asked() && !run_.IsInGrace())) return false;

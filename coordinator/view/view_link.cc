@@ -35,11 +35,11 @@ std::optional<ViewLink::ControlRequests> ViewLink::Take() {
   asked_ = asked;
   const double pace = page_->pace.load();
   const std::int64_t stepped_ns = page_->stepped_ns.load();
-  ControlRequests asked{.pace = std::isfinite(pace) ? std::clamp(pace, 0.0, kMostPace) : 0,
-                        .stands = page_->stands.load() != 0,
-                        .step_ns = std::max<std::int64_t>(0, stepped_ns - stepped_ns_)};
+  ControlRequests requests{.pace = std::isfinite(pace) ? std::clamp(pace, 0.0, kMostPace) : 0,
+                           .stands = page_->stands.load() != 0,
+                           .step_ns = std::max<std::int64_t>(0, stepped_ns - stepped_ns_)};
   stepped_ns_ = std::max(stepped_ns_, stepped_ns);
-  return asked;
+  return requests;
 }
 
 void ViewLink::Tell(const Status& status) {
