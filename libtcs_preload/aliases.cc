@@ -20,7 +20,7 @@ struct Alias {
 Alias g_aliases[kMostAliases];
 int g_count = -1;  // not looked yet
 
-// Each time the same, so that threads may do it at once.
+// The result is the same each time, so that threads may compute it at once.
 int Count() {
   if (g_count >= 0) return g_count;
   int count = 0;

@@ -1,5 +1,5 @@
-// What libtcs_allocations.so (allocations/) calls for each allocation and each lock, where they are
-// counted or have a set cost.
+// The functions that libtcs_allocations.so (allocations/) calls for each allocation and each lock,
+// where these are counted or have a set cost.
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -13,9 +13,9 @@ using tcs::shm::ClockPage;
 using tcs::shm::WorkCounts;
 
 constexpr std::int64_t kLocksPerAllocation = WorkCounts::kLocksPerAllocation;
-// So many locks in a row without anything that costs: it waits for others by looking again and
-// again. The locks between a program's calls and allocations cost nothing; how many they are may
-// depend on addresses.
+// A thread that takes so many locks in a row without anything that costs waits for others by
+// looking again and again. The locks between a program's calls and allocations cost nothing; how
+// many they are may depend on addresses.
 constexpr int kSpins = 1000;
 
 // Null where nothing is counted: in a thread that has not registered, and in the child of a fork
@@ -28,14 +28,15 @@ GuestThread* Counted() {
   return is_counted ? &thread : nullptr;
 }
 
-// What its last call did to others happened before its clock moves on, where only gates hold it.
+// Ends the thread's last call: what the call did to others happened before the thread's clock moves
+// on, where only gates hold the thread.
 void EndLastCall(GuestThread& thread) {
   if (g_header->is_unprivileged == 0 || (!thread.in_call && IsDispatched(thread))) return;
   AwaitTurn(thread);
   thread.in_call = false;
 }
 
-// Moves with everything that costs: time itself, where nothing else moves it.
+// A value that moves with everything that costs: time itself, where nothing else moves it.
 std::int64_t WhatHasCost(const tcs::shm::ThreadSlot& slot) {
   if (g_header->accounting == tcs::shm::Accounting::kFixed) {
     return tcs::shm::ReadClock(slot.clock).time_ns;
@@ -45,8 +46,9 @@ std::int64_t WhatHasCost(const tcs::shm::ThreadSlot& slot) {
 
 }  // namespace
 
-// Both count what the calling thread does, and where it has a set cost charge it, and let others
-// have their turn if that takes it to its horizon. Async-signal-safe; errno stays.
+// Both functions count what the calling thread does. Where that has a set cost they charge the
+// thread, and let others have their turn if the charge takes the thread to its horizon.
+// Async-signal-safe; errno stays.
 
 TCS_EXPORT void tcs_charge_allocation() noexcept {
   GuestThread* thread = Counted();

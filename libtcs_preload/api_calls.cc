@@ -1,4 +1,5 @@
-// What programs of users ask for by themselves (api/tcs.h), looked up there by these names.
+// The functions that users' programs call by themselves (api/tcs.h), looked up there by these
+// names.
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/receipts.h"
 #include "libtcs_preload/virtual_clock.h"

@@ -24,15 +24,16 @@ namespace {
 
 shm::ThreadSlot* g_slots = nullptr;
 
-// Where what is kept is out of the way of programs that count descriptors from 0.
+// From this number on, descriptors that are kept are out of the way of programs that count
+// descriptors from 0.
 constexpr long kWantedFd = 960;
-// Up to such a limit of open files it stays beyond the limit, where the program has no number. The
-// kernel keeps a table up to the highest number, and copies it for each child.
+// Up to such a limit of open files a kept descriptor stays beyond the limit, where the program has
+// no number. The kernel keeps a table up to the highest number, and copies it for each child.
 constexpr rlim64_t kMostBeyond = 4096;
 
 // A program may have used up all its descriptors, and make a thread or a process then, for which it
-// needs none. While this lives there are some more, where the process may raise its limit: those
-// that are kept stay beyond it.
+// needs none. While this object lives there are some more, where the process may raise its limit:
+// the descriptors that are kept stay beyond the limit.
 class MoreDescriptors {
  public:
   explicit MoreDescriptors(bool wanted) {
@@ -64,8 +65,8 @@ class MoreDescriptors {
   bool has_more_ = false;
 };
 
-// Raises no limit unless it must: another thread that came meanwhile would find it raised, and
-// leave it so.
+// Raises no limit unless it must: another thread that came meanwhile would find the limit raised,
+// and leave it so.
 long OpenSocket() {
   const auto open = [] {
     return RawSyscall(SYS_socket, AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
@@ -85,8 +86,8 @@ int Connect() {
   const long fd = OpenSocket();
   if (fd < 0) DieWithoutCoordinator("this process has no free descriptor for the connection to it");
   const long size = static_cast<long>(offsetof(sockaddr_un, sun_path) + 1 + length);
-  // A program in a network of its own, as a sandbox has it, finds nobody under the name: its call
-  // without the mark does, which is trapped.
+  // A program in a network of its own, as in a sandbox, finds nobody under the name. A call without
+  // the mark does, because it is trapped.
   if (RawSyscall(SYS_connect, fd, Arg(&address), size) != 0 &&
       RawSyscall(SYS_connect, fd, Arg(&address), size, 0, 0, 0) != 0) {
     DieWithoutCoordinator("that tcsim is no longer there");
@@ -97,7 +98,7 @@ int Connect() {
 struct Received {
   shm::AttachReply reply{};
   int fds[shm::kMostAttachFds] = {-1, -1, -1, -1};
-  std::int32_t pid = 0, tid = 0;  // of who has asked
+  std::int32_t pid = 0, tid = 0;  // of the thread that has asked
 };
 
 Received Exchange(int socket, shm::AttachWants wants) {
@@ -105,7 +106,7 @@ Received Exchange(int socket, shm::AttachWants wants) {
   hello.pid = static_cast<std::int32_t>(RawSyscall(SYS_getpid));
   hello.tid = static_cast<std::int32_t>(RawSyscall(SYS_gettid));
   hello.parent_pid = static_cast<std::int32_t>(RawSyscall(SYS_getppid));
-  // Up to glibc 2.42 it holds the thread's id, from 2.43 on a state.
+  // Up to glibc 2.42 the word holds the thread's id, from 2.43 on a state.
   RawSyscall(SYS_prctl, PR_GET_TID_ADDRESS, Arg(&hello.end_word), 0, 0, 0);
   RawSocketCall(SYS_sendto, socket, Arg(&hello), sizeof hello, MSG_NOSIGNAL, 0, 0);
 
@@ -145,8 +146,8 @@ void MapRun(int fd) {
   }
 }
 
-// A child by fork has not inherited its parent's. Its own goes to the same place, if that is free:
-// a handler that forked may still look there.
+// A child by fork has not inherited its parent's slots. The child's slots go to the same place, if
+// that is free: a handler that forked may still look there.
 void MapSlots(int fd) {
   constexpr long kSize = static_cast<long>(shm::kProcessMemorySize);
   const auto map = [fd](long where, int how) {
@@ -160,7 +161,7 @@ void MapSlots(int fd) {
   g_slots = reinterpret_cast<shm::ThreadSlot*>(at);
 }
 
-// Out of the way, as `kept`, which is the parent's before.
+// Moves the descriptor out of the way, as `kept`, which is the parent's before.
 void Keep(int fd, int& kept, const MoreDescriptors& more) {
   if (kept >= 0) {
     if (RawSyscall(SYS_dup3, fd, kept, O_CLOEXEC) == kept) {
@@ -181,8 +182,8 @@ void Keep(int fd, int& kept, const MoreDescriptors& more) {
 }  // namespace
 
 void Attach(GuestThread& thread, unsigned long blocked) {
-  // What it has inherited, or an earlier attach has left, is this process's own only if one of its
-  // threads has a place already.
+  // The state that the process has inherited, or that an earlier attach has left, is its own only
+  // if one of its threads has a place already.
   const bool is_first = g_process->mode != ProcessState::kAttached;
   const MoreDescriptors more(is_first);
   const int socket = Connect();

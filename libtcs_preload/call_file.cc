@@ -9,7 +9,8 @@ namespace tcs::preload {
 
 namespace {
 
-// What the call opens has the number that it would have.
+// Moves the descriptor out of the way: a file that the call opens has the number that it would have
+// without it.
 int OutOfTheWay(int fd) {
   constexpr long kFar = 512;
   const long moved = RawSyscall(SYS_fcntl, fd, F_DUPFD_CLOEXEC, kFar);
@@ -24,7 +25,7 @@ long Ask(std::uint32_t what) { return RawSyscall(SYS_futex, 0, static_cast<long>
 
 CallFile::~CallFile() {
   if (!is_kept_) return;
-  // The process is the last one to close it, for that may take its time (SO_LINGER).
+  // The process is the last one to close the file, because the close may take its time (SO_LINGER).
   LeaveFiles(thread_);
   PutBack();
 }
@@ -38,8 +39,8 @@ WaitResult CallFile::Take(WaitResult result, bool is_kept) {
   is_kept_ = is_kept && result != WaitResult::kInterrupted;
   if (!is_kept_) return result;
   const long taken = Ask(shm::kTakeFile);
-  // A handler has waited for something else in between: as if it had come before what the call
-  // waits for.
+  // A handler has waited for something else in between: the wait ends as if the handler had come
+  // before what the call waits for.
   if (taken == -ENOENT) {
     is_kept_ = false;
     return WaitResult::kInterrupted;

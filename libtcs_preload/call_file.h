@@ -1,8 +1,8 @@
 // The file that a call was made on. Linux keeps it for as long as the call lasts, whatever becomes
 // of its number meanwhile: closed, replaced, or used again. So does the coordinator while a thread
 // waits. Where the number has come to mean another file then, or none, the call goes on with a
-// descriptor that the coordinator puts into the process for one attempt. It is never there while
-// the thread waits, for a child would inherit it, and no end of file would come.
+// descriptor that the coordinator puts into the process for one attempt. That descriptor is never
+// there while the thread waits, because a child would inherit it, and no end of file would come.
 //
 // On the stack of the call; async-signal-safe.
 #pragma once
@@ -23,12 +23,12 @@ class CallFile {
   CallFile& operator=(const CallFile&) = delete;
 
   GuestThread& thread() const { return thread_; }
-  // What the next system call is made on.
+  // The descriptor that the next system call is made on.
   int fd() const { return is_kept_ ? taken_ : number_; }
 
-  // As WaitForFds. After a signal the call begins anew, with what its number means then.
+  // As WaitForFds. After a signal the call begins anew, with the file that its number means then.
   WaitResult Wait(short events, std::int64_t deadline_ns, Waiting waiting);
-  // The same for a kernel object that cannot be polled (KernelObjectKind).
+  // As Wait, for a kernel object that cannot be polled (KernelObjectKind).
   WaitResult WaitForObject(shm::KernelObjectKind kind, std::int64_t deadline_ns, bool again);
 
  private:

@@ -1,7 +1,7 @@
-// The calls that read clocks, under names that no program can put its own in front of: what is led
-// here from the vDSO must not come back to a function that calls the vDSO.
+// The calls that read clocks, under names that no program can put its own in front of: a call that
+// is led here from the vDSO must not come back to a function that calls the vDSO.
 //
-// Return what the kernel does, a result or -errno, and leave errno alone.
+// The functions return what the kernel does, a result or -errno, and leave errno alone.
 #pragma once
 
 #include <sys/time.h>

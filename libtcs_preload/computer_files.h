@@ -1,6 +1,7 @@
-// Files in which programs read of their computer. The coordinator opens them, and finds out which
-// they are; here is only told what is certainly none. Such an open is made so that it is trapped,
-// as one is that the program makes raw. Async-signal-safe; errno stays as it is.
+// Files in which programs read about their computer. The coordinator opens these files, and finds
+// out which they are; the functions here only tell which files are certainly none of them. The open
+// of such a file is made so that it is trapped, as an open is that the program makes raw.
+// Async-signal-safe; errno stays as it is.
 #pragma once
 
 namespace tcs::preload {
@@ -11,13 +12,13 @@ bool MayBeOfComputer(int folder, const char* path, int flags);
 // The coordinator's answer, or the kernel's if the file is another one: a descriptor, or -errno.
 long OpenOfComputer(int folder, const char* path, int flags);
 
-// What is in the folders of the processors: a robot may have more of them than its host. The same
-// as OpenOfComputer, for who asks about a name there; negative for other names, too. The name can
-// be read.
+// Opens a file in the folders of the processors: a robot may have more processors than its host. As
+// OpenOfComputer, for a caller that asks about a name there; negative for other names, too. The
+// name can be read.
 long OpenProcessorFolder(const char* path, int flags);
 
-// The program has gone back to the beginning of what the descriptor reads: what it finds there is
-// of now, if it is one of these files.
+// The program has gone back to the beginning of the file that the descriptor reads. The program
+// finds the contents of now there, if the file is one of these files.
 void ReadAnew(int fd);
 
 }  // namespace tcs::preload

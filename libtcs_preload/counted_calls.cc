@@ -1,4 +1,5 @@
-// What a call costs where calls have a set cost, and where it has to wait for its thread's turn.
+// The cost of a call where calls have a set cost, and the wait of a call for its thread's turn
+// where it has to wait.
 #include <utility>
 
 #include "libtcs_preload/descriptor_broker.h"
@@ -44,7 +45,8 @@ void CountCall(GuestThread& thread, Concern concern) {
   shm::ClockPage& page = thread.slot->clock;
   if (page.call_cost_ns == 0) return;
   Charge(page, page.call_cost_ns);
-  // Not at the next look at a clock: that may be at the same place of a loop each time.
+  // The clock is read here and not at the next look at a clock, which may be at the same place of a
+  // loop each time.
   NowNs(thread);
 }
 

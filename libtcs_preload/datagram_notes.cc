@@ -27,18 +27,18 @@ void Add(GuestThread& thread, shm::DatagramNotes::Note note) {
   note.activation =
       static_cast<std::uint8_t>(thread.slot->receipts.count.load(std::memory_order_relaxed));
   shm::DatagramNotes& notes = thread.slot->datagrams;
-  // A handler that comes between overwrites one.
+  // A handler that comes between overwrites a note.
   const std::uint32_t place = notes.count.load(std::memory_order_relaxed);
   if (place >= shm::DatagramNotes::kMost) return;
   notes.notes[place] = note;
   notes.count.store(place + 1, std::memory_order_release);
-  // Full: any stop empties it.
+  // The list is full: any stop empties it.
   if (place + 1 == shm::DatagramNotes::kMost && thread.depth == 0) {
     Exchange(thread, Request{.kind = shm::NotificationKind::kPassOn});
   }
 }
 
-// Of no address that counts: of size 0.
+// A note of size 0 has no address that counts.
 shm::DatagramNotes::Note NoteOf(const void* address, socklen_t size, What what) {
   const shm::ReceiverAddress of = shm::AddressOf(address, size);
   shm::DatagramNotes::Note note = shm::NoteAbout(of.bytes, of.size);
@@ -47,7 +47,8 @@ shm::DatagramNotes::Note NoteOf(const void* address, socklen_t size, What what) 
   return note;
 }
 
-// How many the kernel has dropped because the socket was full, and whether more wait.
+// Notes how many datagrams the kernel has dropped because the socket was full, and whether more
+// wait.
 void AddMemory(int fd, shm::DatagramNotes::Note* note) {
   std::uint32_t info[SK_MEMINFO_VARS] = {};
   socklen_t size = sizeof info;

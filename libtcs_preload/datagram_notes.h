@@ -1,4 +1,4 @@
-// What the shim notes of datagrams and of DDS samples (shm/datagram_notes.h).
+// The shim's notes of datagrams and of DDS samples (shm/datagram_notes.h).
 // Async-signal-safe.
 #pragma once
 
@@ -10,16 +10,18 @@ namespace tcs::preload {
 
 inline bool NotesActivity() { return g_header->notes_activity != 0; }
 
-// The thread is about to send one on the socket; null: to its peer. Not of other kinds of sockets.
+// The thread is about to send a datagram on the socket; null: to the socket's peer. Other kinds of
+// sockets are not noted.
 void NoteDatagram(GuestThread& thread, int fd, const void* address, socklen_t size);
-// That has failed.
+// The send that was noted has failed.
 void TakeBackDatagram(GuestThread& thread, int fd, const void* address, socklen_t size);
 
-// It has received so many from the socket, which may be of another kind unless `is_datagram`.
+// The thread has received `count` datagrams from the socket, which may be of another kind unless
+// `is_datagram`.
 void NoteDatagramsReceived(GuestThread& thread, int fd, std::uint32_t count,
                            bool is_datagram = false);
 
-// It has taken those DDS samples.
+// The thread has taken those DDS samples.
 void NoteSamplesTaken(GuestThread& thread, const shm::TakenSamples& samples);
 
 }  // namespace tcs::preload

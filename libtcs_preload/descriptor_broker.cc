@@ -52,14 +52,14 @@ long Clone(long flags, char* stack, void (*run)(), std::atomic<int>* tid) {
   return result;
 }
 
-// A tracer is not told: it would take them for the program's.
+// A tracer is not told of these processes: it would take them for the program's.
 constexpr long kShares = CLONE_VM | CLONE_FILES | CLONE_UNTRACED;
 
 [[noreturn]] void End(long status) {
   for (;;) RawSyscall(SYS_exit, status);
 }
 
-// False if nobody is there any more to get it.
+// False if nobody is there any more to get the answer.
 bool Answer(shm::BrokerAnswer answer, int fd) {
   iovec iov{&answer, sizeof answer};
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof fd)] = {};
@@ -81,7 +81,7 @@ bool Answer(shm::BrokerAnswer answer, int fd) {
 }
 
 [[noreturn]] void HandOver() {
-  // Signals to the program's group, and to those of its terminal, are not for it.
+  // Signals to the program's group, and to those of its terminal, are not for the broker.
   RawSyscall(SYS_setsid);
   RawSyscall(SYS_prctl, PR_SET_NAME, Arg("tcs-broker"));
   RawSyscall(SYS_chdir, Arg("/"));
@@ -98,8 +98,8 @@ bool Answer(shm::BrokerAnswer answer, int fd) {
   End(0);
 }
 
-// Its end makes the broker an orphan. It waits until the broker has told the coordinator who it is:
-// meanwhile the thread that makes them stands in vfork.
+// The end of this process makes the broker an orphan. The process waits until the broker has told
+// the coordinator who it is: meanwhile the thread that makes both stands in vfork.
 [[noreturn]] void MakeOrphan() {
   constexpr timespec kTurn{0, 200'000};
   const std::atomic<std::uint32_t>& state = g_process->broker_state;
@@ -110,10 +110,10 @@ bool Answer(shm::BrokerAnswer answer, int fd) {
   End(broker > 0 ? 0 : 1);
 }
 
-// These wait without sleeping: a dispatched thread that sleeps in a call which nobody knows is
+// The wait here does not sleep: a dispatched thread that sleeps in a call which nobody knows is
 // taken to be held by the kernel, and time would go on without it.
 
-// Of a child that is about to end, or has.
+// Reaps a child that is about to end, or has ended.
 int Reap(long child) {
   int status = 1;
   while (RawSyscall(SYS_wait4, child, Arg(&status), WNOHANG | __WALL) == 0) {
@@ -127,7 +127,7 @@ int Reap(long child) {
 void MakeBroker() {
   if (g_broker_fd < 0 || g_process->broker_state.load() == kIsDeaf) return;
   if (g_process->makes_broker.exchange(1) != 0) return;
-  // Both have this thread's mask.
+  // Both processes have this thread's mask.
   const unsigned long all = ~0ul;
   unsigned long before = 0;
   RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before), kSetSize);

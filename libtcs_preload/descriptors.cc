@@ -21,7 +21,7 @@ using namespace tcs::preload;
 
 namespace {
 
-// A thread may wait in a call on what is about to be closed or replaced.
+// A thread may wait in a call on the descriptor that is about to be closed or replaced.
 void NoteChange() {
   const GuestThread* t = IfAttached();
   if (t == nullptr) return;
@@ -29,14 +29,15 @@ void NoteChange() {
   changed.store(changed.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
-// The kernel refuses a number beyond the limit of open files before it looks at what has it.
+// The kernel refuses a number beyond the limit of open files before it looks at the file that has
+// it.
 bool IsBeyondLimit(int fd) {
   rlimit64 limit{};
   RawSyscall(SYS_prlimit64, 0, RLIMIT_NOFILE, 0, Arg(&limit));
   return static_cast<rlim64_t>(fd) >= limit.rlim_cur;
 }
 
-// What was open for others to see is about to be closed.
+// A file that was open for others to see is about to be closed.
 void BeginClosing(int fd) {
   NoteChange();
   NoteCloses(fd);
@@ -69,7 +70,7 @@ long CloseRange(unsigned first, unsigned last, unsigned flags) {
   if ((flags & CLOSE_RANGE_CLOEXEC) == 0) {
     for (unsigned fd = first; fd <= last && fd < 1024; ++fd) ForgetTimer(static_cast<int>(fd));
   }
-  // Around the shim's own.
+  // Closes around the shim's own descriptors.
   const bool in_order = g_notify_fd < g_broker_fd;
   const long own[] = {in_order ? g_notify_fd : g_broker_fd, in_order ? g_broker_fd : g_notify_fd};
   long from = first, result = 0;

@@ -18,7 +18,7 @@ constexpr char kPreload[] = "LD_PRELOAD";
 constexpr const char* kOwnLibraries[] = {"libtcs_preload.so", "libtcs_allocations.so"};
 constexpr char kSeparators[] = ": ";
 
-char g_own_libraries[4096];  // of LD_PRELOAD, what is tcs's: "/there/libtcs_preload.so"
+char g_own_libraries[4096];  // the part of LD_PRELOAD that is tcs's: "/there/libtcs_preload.so"
 char g_socket_entry[256];
 char g_aliases_entry[4096];  // empty: there are none
 bool g_remembered = false;
@@ -54,7 +54,7 @@ Item TakeItem(const char*& list) {
   return item;
 }
 
-// Copies what it is given, one behind the other.
+// Copies the texts that it is given, one behind the other.
 class Copy {
  public:
   explicit Copy(char* to) : at_(to) { *at_ = '\0'; }
@@ -93,7 +93,8 @@ class Comparison {
   bool is_same_ = true;
 };
 
-// The items of `list` that are tcs's, or those that are not, behind those that are there already.
+// Puts the items of `list` that are tcs's, or the other ones, behind the items that are there
+// already.
 template <class To>
 void PutItems(const char* list, bool ours, bool* has_items, To& to) {
   for (Item item = TakeItem(list); item.length != 0; item = TakeItem(list)) {
@@ -103,9 +104,9 @@ void PutItems(const char* list, bool ours, bool* has_items, To& to) {
   }
 }
 
-// The entry with which a program is executed whose own is `value` (null: it has none). Its own
-// libraries come first: a sanitizer's runtime must, and of those that define the same function the
-// first one passes it on to ours.
+// The entry with which a program is executed whose own entry is `value` (null: there is none). The
+// program's own libraries come first: a sanitizer's runtime must, and of libraries that define the
+// same function the first one passes calls on to ours.
 template <class To>
 void PutEntry(const char* value, To& to) {
   bool has_items = false;

@@ -1,4 +1,4 @@
-// What the shim keeps of the environment, and how it passes it on: a program that runs its children
+// The parts of the environment that the shim keeps and passes on: a program that runs its children
 // with an environment of its own making still runs them in virtual time, and with the libraries
 // that it preloads for them (stdbuf does).
 #pragma once
@@ -19,9 +19,9 @@ const char* AliasLines();
 const char* SocketName();
 
 // An environment for exec: `envp` itself if it carries the shim's variables, else a copy with them:
-// what LD_PRELOAD has there is kept, and the shim comes before it. Where there is no memory for a
-// copy it is `envp`, too. Valid while this object lives. Async-signal-safe, and sparing of stack:
-// some programs execute others on 4 KiB.
+// the libraries that LD_PRELOAD names there are kept, and the shim comes behind them. Where there
+// is no memory for a copy the environment is `envp`, too. Valid while this object lives.
+// Async-signal-safe, and sparing of stack: some programs execute others on 4 KiB.
 //
 // A child that shares its parent's memory and executes a program leaves its copy there.
 class EnvironmentWithShim {

@@ -30,8 +30,8 @@ constexpr std::int64_t kMostGateNs = 10'000;
 constexpr std::int64_t kMostCallNs = 1'000;
 constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's begins with it
 
-// True where its own CPU clock alone tells what the thread computes: others have the processor as
-// it has.
+// True where the thread's own CPU clock alone tells what the thread computes: other tasks have the
+// processor as the thread has.
 bool OnlyCpuClockTells(const shm::ClockPage& page) {
   return g_header->is_unprivileged != 0 && page.ns_per_tick_q32 != 0;
 }
@@ -42,12 +42,13 @@ bool RunsBeside(const shm::ThreadSlot& slot) {
   return slot.saying.load(std::memory_order_acquire) == Saying::kRuns;
 }
 
-// What the thread's clock has counted since then.
+// The time that the thread's clock has counted since `tsc`.
 std::int64_t NsSince(const shm::ClockPage& page, std::uint64_t tsc) {
   return shm::MulQ32(static_cast<std::int64_t>(shm::ReadTsc() - tsc), page.ns_per_tick_q32);
 }
 
-// The thread's own CPU clock, and how far that was from either end of the call that has asked.
+// The thread's own CPU clock, and how far that reading was from either end of the call that has
+// asked for it.
 struct OwnCpu {
   std::int64_t ns, way_ns;
 };
@@ -65,14 +66,14 @@ OwnCpu ReadOwnCpu(const shm::ClockPage& page) {
 // for one that ends a wait. So until the destructor no handler runs.
 class NoHandlers {
  public:
-  // `blocked`: by the program, if that is something else than by the thread.
+  // `blocked`: the signals that the program blocks, if they differ from the thread's.
   NoHandlers(shm::ThreadSlot& slot, const unsigned long* blocked) : page_(slot.clock) {
     if (g_header->is_unprivileged == 0) return;
     const unsigned long all = ~0ul;
     RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before_), kSetSize);
     slot.blocked_signals = blocked != nullptr ? *blocked : before_;
   }
-  // The thread has left its gate: that it has to do this, too, is not its own time.
+  // The thread has left its gate: the time that it needs for this, too, is not its own.
   ~NoHandlers() {
     const std::uint64_t begun_tsc = shm::ReadTsc();
     if (Allow(0) && OnlyCpuClockTells(page_)) {
@@ -82,8 +83,8 @@ class NoHandlers {
   NoHandlers(const NoHandlers&) = delete;
   NoHandlers& operator=(const NoHandlers&) = delete;
 
-  // They may run, but for those of `but`, which have to wait for the destructor. False if they may
-  // already.
+  // Handlers may run, but for those of the signals `but`, which have to wait for the destructor.
+  // False if all handlers may run already.
   bool Allow(unsigned long but) {
     if (g_header->is_unprivileged == 0 || allows_all_) return false;
     const unsigned long mask = before_ | but;
@@ -113,8 +114,9 @@ void DieIfCoordinatorIsGone() {
   }
 }
 
-// What the thread has come to, before it does anything for the exchange itself. Where it runs
-// beside the coordinator, that one could not read the thread's CPU clock at this instant.
+// The reading that the thread has come to, before it does anything for the exchange itself. Where
+// the thread runs beside the coordinator, the coordinator could not read the thread's CPU clock at
+// this instant.
 shm::ClockReading ReadForNote(const shm::ThreadSlot& slot, shm::ClockPage& page) {
   for (;;) {
     shm::ClockReading reading = shm::ReadClock(page);
@@ -142,7 +144,7 @@ Charged FillRecord(shm::ThreadSlot& slot, const Request& request,
   return {shm::DispatchNumber(reading.executed_word), reading.cpu_ns};
 }
 
-// Of a thread that has come to that reading.
+// Notifies for a thread that has come to that reading.
 void Notify(const GuestThread& thread, const shm::ClockReading& reading) {
   shm::ThreadSlot& slot = *thread.slot;
   slot.stopped_tsc = reading.tsc;
@@ -158,7 +160,7 @@ void Notify(const GuestThread& thread, const shm::ClockReading& reading) {
   }
 }
 
-// What the way to the gate and out of it has taken, and the time that others had meanwhile.
+// Takes out the time of the way to the gate and out of it, and the time that others had meanwhile.
 void TakeOutWait(shm::ClockPage& page, const Charged& at_notification, std::int64_t most_ns) {
   const OwnCpu own = ReadOwnCpu(page);
   const shm::ClockReading now = shm::ReadClock(page);
@@ -167,8 +169,8 @@ void TakeOutWait(shm::ClockPage& page, const Charged& at_notification, std::int6
                  own.ns + own.way_ns, most_ns);
 }
 
-// How many handlers of a thread's had begun before it waits; one that begins later ends the wait.
-// None: no handler ends it.
+// How many handlers of a thread's had begun before it waits; a handler that begins later ends the
+// wait. Null: no handler ends the wait.
 using HandlersBefore = const std::uint32_t*;
 
 // False if a signal handler has run and the gate is still shut.
@@ -188,8 +190,8 @@ bool WaitAtGate(shm::ThreadSlot& slot, HandlersBefore handlers, const Charged& c
     if (gate == shm::kGateClosed && !slot.gate.compare_exchange_strong(gate, shm::kGateWaiting)) {
       continue;
     }
-    // One that begins after this look shuts the gate anew (NoteHandler), and the kernel does not
-    // wait.
+    // A handler that begins after this look shuts the gate anew (NoteHandler), and the kernel does
+    // not wait.
     if (handlers != nullptr && OwnState().handlers != *handlers) return false;
     const long result =
         RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting, Arg(&kGateTurn));
@@ -204,7 +206,7 @@ bool WaitAtGate(shm::ThreadSlot& slot, HandlersBefore handlers, const Charged& c
   }
 }
 
-// False if it is open already.
+// False if the gate is open already.
 bool ShutGate(shm::ThreadSlot& slot) {
   std::uint32_t gate = slot.gate.load(std::memory_order_acquire);
   while (gate != shm::kGateOpen) {
@@ -213,8 +215,8 @@ bool ShutGate(shm::ThreadSlot& slot) {
   return false;
 }
 
-// Where the thread has said something, and the coordinator has yet to take it: until then the slot
-// may say nothing else.
+// Waits until the coordinator has taken what the thread has said, if it has said something: until
+// then the slot may say nothing else.
 void AwaitTaken(shm::ThreadSlot& slot) {
   for (;;) {
     Saying saying = slot.saying.load(std::memory_order_acquire);
@@ -230,7 +232,7 @@ void AwaitTaken(shm::ThreadSlot& slot) {
 }
 
 enum class Ended {
-  kWait,     // which the coordinator has been told of
+  kWait,     // the coordinator has been told of the wait
   kNothing,  // the thread did not wait
   kByOther,  // something else has ended the wait: the gate is open
 };
@@ -241,7 +243,7 @@ Ended EndWait(GuestThread& thread) {
   AwaitTaken(slot);
   const shm::ClockReading reading = ReadForNote(slot, slot.clock);
   NoHandlers none(slot, nullptr);
-  // The handler may have begun before the thread's turn. If that begins after this look, the
+  // The handler may have begun before the thread's turn. If the turn begins after this look, the
   // coordinator makes nothing of what it is told.
   if (!ShutGate(slot)) return Ended::kByOther;
   const NotificationKind kind = slot.note.kind;
@@ -267,7 +269,8 @@ Reply ExchangeOnce(GuestThread& thread, const Request& request) {
     const unsigned long mask = *request.suspend_mask | OwnSignalsHeldInWaits();
     RawSyscall(SYS_rt_sigsuspend, Arg(&mask), kSetSize);
     none.Allow(0);
-    // Dispatched before the signal was sent, unless it came from somebody else.
+    // The thread was dispatched before the signal was sent, unless the signal came from somebody
+    // else.
     if (slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) EndWait(thread);
     return Reply{WakeReason::kSignal, {0, 0}};
   }
@@ -283,7 +286,7 @@ Reply ExchangeOnce(GuestThread& thread, const Request& request) {
   return Reply{slot.wake_reason.load(std::memory_order_relaxed), {slot.reply[0], slot.reply[1]}};
 }
 
-// What a handler finds of the exchange it interrupted, and must leave as it was.
+// The state of the exchange that a handler has interrupted, which the handler must leave as it was.
 struct Interrupted {
   shm::Notification note;
   std::uint32_t gate;
@@ -310,7 +313,7 @@ struct Interrupted {
     reply[1] = slot.reply[1];
   }
 
-  // What the handler has computed is no part of what it interrupted.
+  // The time that the handler has computed is no part of the exchange that it interrupted.
   void PutBack(shm::ThreadSlot& slot) const {
     slot.note = note;
     slot.note.time_ns = shm::ShownTime(slot.clock, shm::ReadClock(slot.clock));
@@ -321,7 +324,8 @@ struct Interrupted {
   }
 };
 
-// In whatever the thread does: it may be in a handler that has interrupted another exchange.
+// Makes an exchange in whatever the thread does: the thread may be in a handler that has
+// interrupted another exchange.
 Reply ExchangeAnywhere(GuestThread& thread, const Request& request) {
   Reply reply;
   if (thread.depth++ == 0) {
@@ -337,8 +341,8 @@ Reply ExchangeAnywhere(GuestThread& thread, const Request& request) {
 
 }  // namespace
 
-// A wait that was to end for a signal of the process's may find that another thread has taken that:
-// no handler has run in this one. As the kernel has it, it waits on.
+// A wait that was to end for a signal of the process's may find that another thread has taken the
+// signal: no handler has run in this thread. As the kernel has it, the thread waits on.
 Reply Exchange(GuestThread& thread, const Request& request) {
   const bool waits = request.interruptible || request.suspend_mask != nullptr;
   for (;;) {

@@ -19,7 +19,8 @@ struct Request {
   bool interruptible = false;
   // The kernel's signal mask to wait with for a handler, instead of at the gate; null: the gate.
   const unsigned long* suspend_mask = nullptr;
-  // The signals that the program blocks, in a handler that it does not know of; null: in no such.
+  // The signals that the program blocks, in a handler that it does not know of; null: the thread is
+  // in no such handler.
   const unsigned long* blocked = nullptr;
 };
 
@@ -34,11 +35,12 @@ struct Reply {
 Reply Exchange(GuestThread& thread, const Request& request);
 
 // At the beginning of a call, where nothing but its gate keeps a thread from running on: returns
-// once the coordinator has seen what the thread's last call did to others, and has it dispatched.
+// once the coordinator has seen what the thread's last call did to others, and has dispatched the
+// thread.
 void AwaitTurn(GuestThread& thread);
 
-// True while the thread has a turn beside others, before its order: what it does to others at once
-// has to wait for that. Any exchange ends such a turn.
+// True while the thread has a turn beside others, before its order: an effect on others that comes
+// at once has to wait for the order. Any exchange ends such a turn.
 bool IsBeside(const GuestThread& thread);
 
 // True in a handler that has interrupted an exchange of the thread's whose answer is not there yet.
@@ -49,14 +51,15 @@ bool IsAtGate(const GuestThread& thread);
 void NoteHandler(GuestThread& thread);
 
 // Before the handler executes anything of the program's: where nothing but its gate keeps the
-// thread from running on, and it has no turn, it waits for one. The coordinator hears that the
-// handler ends a wait, however long that computes before its first call.
+// thread from running on, and the thread has no turn, it waits for one. The coordinator hears that
+// the handler ends a wait, however long the handler computes before its first call.
 void AwaitTurnOfHandler(GuestThread& thread);
 
 // The gate without a notification: the attach itself was one.
 void AwaitFirstDispatch(GuestThread& thread);
 
-// The same in a handler that has interrupted an exchange: that has notified.
+// The gate without a notification in a handler that has interrupted an exchange: the exchange has
+// notified.
 void AwaitDispatch(GuestThread& thread);
 
 }  // namespace tcs::preload

@@ -1,5 +1,5 @@
-// What /proc/self/fdinfo says of a descriptor: of an epoll set its members, of a signalfd its
-// signals. Async-signal-safe; takes 1.2 KiB of the stack.
+// The information of /proc/self/fdinfo on a descriptor: the members of an epoll set, the signals of
+// a signalfd. Async-signal-safe; takes 1.2 KiB of the stack.
 #pragma once
 
 #include <fcntl.h>
@@ -26,7 +26,7 @@ class FdInfo {
   FdInfo(const FdInfo&) = delete;
   FdInfo& operator=(const FdInfo&) = delete;
 
-  // The next line, or null; what does not fit is cut off.
+  // The next line, or null; the part of a line that does not fit is cut off.
   const char* Next() {
     std::size_t length = 0;
     for (;; ++at_) {
@@ -78,7 +78,7 @@ struct EpollMember {
   std::uint64_t data;
 };
 
-// The next one that `info` tells of; false: there is none.
+// The next member that `info` tells of; false: there is none.
 inline bool NextMember(FdInfo& info, EpollMember* member) {
   while (const char* line = info.Next()) {
     std::uint64_t fd, events;

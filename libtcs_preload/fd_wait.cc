@@ -51,7 +51,7 @@ WaitResult ResultOf(WakeReason reason) {
     case WakeReason::kSignal:
       return WaitResult::kInterrupted;
     case WakeReason::kGo:
-    case WakeReason::kCutOff:  // nobody comes back with that
+    case WakeReason::kCutOff:  // no thread comes back with that
       break;
   }
   return WaitResult::kRetry;
@@ -139,7 +139,7 @@ FdState AwaitEvent(CallFile& file, short events, std::int64_t deadline_ns, bool 
           Fail(EINTR);
           return FdState::kFailed;
         }
-        // What its number means now is looked for there.
+        // The file that its number means now is looked at.
         if (PollNow(file.fd(), events)) return FdState::kWaited;
         break;
     }
@@ -160,7 +160,7 @@ FdState AwaitFd(CallFile& file, short events, std::int64_t deadline_ns) {
 
 bool HoldForReadFrom(GuestThread& thread, int fd, bool socket) {
   if (const TimerFd* timer = socket ? nullptr : FindTimerFd(fd); timer != nullptr) {
-    // What of a short interval has run out meanwhile is not in the descriptor yet.
+    // Expirations of a timer of a short interval are not in the descriptor yet.
     if (timer->is_short) {
       Exchange(thread, Request{.kind = NotificationKind::kTimerGet, .args = {timer->id}});
     }

@@ -1,5 +1,5 @@
 // Locks of files: flock, fcntl's and lockf. The kernel is asked for what it can do at once; where
-// that is nothing it holds the thread, and keeps the order and finds deadlocks.
+// it can do nothing at once the kernel holds the thread, keeps the order and finds deadlocks.
 #include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>
@@ -19,14 +19,14 @@ using namespace tcs::preload;
 
 namespace {
 
-// A lock has its place in time: nobody may take or give one at an earlier time any more. `at_once`
-// and `waiting` are the call in its two forms, the latter null where it does not wait.
+// A lock has its place in time: no thread may take or give one at an earlier time any more.
+// `at_once` and `waiting` are the call in its two forms, the latter null where it does not wait.
 template <class AtOnce, class Waiting>
 long Lock(GuestThread& t, bool waits, bool cancellable, AtOnce at_once, Waiting waiting) {
   HoldForRead(t);
   HoldForWrite(t);
   long result = at_once();
-  // Even one that fails may have given up the lock that was to be changed.
+  // Even a call that fails may have given up the lock that was to be changed.
   TellKernelWaiters(t);
   if (!waits || (result != -EAGAIN && result != -EACCES)) return result;
   result = WaitInKernel(t, cancellable, waiting);
@@ -94,7 +94,7 @@ TCS_EXPORT int fcntl(int fd, int command, ...) {
   va_start(arguments, command);
   const long argument = va_arg(arguments, long);  // an int or a pointer, or nothing
   va_end(arguments);
-  // The C library has this one by a newer call of the kernel, for owners below zero.
+  // The C library makes this command by a newer call of the kernel, for owners below zero.
   if (command == F_GETOWN) return TCS_REAL(fcntl)(fd, command);
   return static_cast<int>(ToErrno(Control(fd, command, argument)));
 }

@@ -19,8 +19,8 @@ namespace {
 // The two structures are one here, and the kernel's.
 static_assert(sizeof(struct stat) == sizeof(struct stat64));
 
-// What the kernel says; of what is in the folders of the robot's processors, `ask(fd)`. The kernel
-// comes first, for it knows whether the name can be read at all.
+// The answer of the kernel; for files in the folders of the robot's processors, of `ask(fd)`. The
+// kernel comes first, because it knows whether the name can be read at all.
 template <class Ask, class Kernel>
 long OfProcessors(const char* path, bool follows, Ask ask, Kernel kernel) {
   const long found = kernel();
@@ -53,10 +53,10 @@ int AccessAt(int folder, const char* path, int mode, int flags) {
       kernel)));
 }
 
-// What programs call in their place that were built with glibc up to 2.32, whose header has such a
-// call made of each: it says first which structure the program knows.
+// The functions that programs built with glibc up to 2.32 call in their place, because the header
+// makes such a call of each. `version` says which structure the program knows.
 int OldStatAt(int version, int folder, const char* path, void* status, int flags) {
-  constexpr int kKernels = 0, kLibrarys = 1;  // the same one
+  constexpr int kKernels = 0, kLibrarys = 1;  // the same structure
   if (version != kKernels && version != kLibrarys) return Fail(EINVAL);
   return StatAt(folder, path, status, flags);
 }

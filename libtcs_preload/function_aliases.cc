@@ -1,5 +1,5 @@
 // Other names of functions that the shim replaces, as older programs and other libraries call them:
-// each goes on to the plain one, whatever its arguments.
+// each alias goes on to the plain function, whatever its arguments.
 #define TCS_ALIAS(alias, name)               \
   __asm__(                                   \
       ".pushsection .text\n"                 \

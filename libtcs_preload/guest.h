@@ -2,7 +2,7 @@
 //
 //   * no allocation, and no lock that the program could hold when it forks or is interrupted;
 //   * the kernel is entered through RawSyscall (raw_syscall.h), the C library's own functions
-//   through real.h;
+//     through real.h;
 //   * errno changes only where POSIX says so;
 //   * everything is safe in a signal handler and in the child of a fork;
 //   * mechanism only: who runs when is the coordinator's business.
@@ -29,19 +29,20 @@ struct GuestThread {
   std::int32_t pid = 0, tid = 0;  // of the attached thread, as it finds them itself
   int depth = 0;                  // exchanges under way; above 1 in a handler that interrupted one
   bool attaching = false;
-  std::uint32_t handlers = 0;  // of the program's that have begun in it
-  // Since it last waited for its turn (exchange.h) it has begun a call; where the thread's own
-  // clock keeps it from going on, one whose end others may see.
+  std::uint32_t handlers = 0;  // handlers of the program's that have begun in the thread
+  // The thread has begun a call since it last waited for its turn (exchange.h); where the thread's
+  // own clock keeps it from going on, a call whose end others may see.
   bool in_call = false;
-  std::uint64_t told_dispatch = ~std::uint64_t{0};  // that began in an unseen call, and said so
-  bool passes_on = false;                           // others wait for what it leaves (fd_wait.h)
-  bool keeps_files = false;  // the coordinator, for the call that it is in (call_file.h)
-  bool posts = false;        // puts something into its command ring
-  // Sockets, by their cookies, from which it may post (posting.cc); the next goes to this place.
+  std::uint64_t told_dispatch = ~std::uint64_t{0};  // began in an unseen call, which was told
+  bool passes_on = false;                           // others wait for what is left (fd_wait.h)
+  bool keeps_files = false;  // the coordinator keeps them, for the thread's call (call_file.h)
+  bool posts = false;        // the thread puts something into its command ring
+  // Sockets, by their cookies, from which the thread may post (posting.cc); the next socket goes to
+  // this place.
   std::uint64_t posting_sockets[4] = {};
   std::uint32_t posting_socket = 0;
-  std::int64_t cpu_shown_ns = 0;  // its charged processor time as it was last shown
-  // Locks taken in a row, since what allocation_cost.cc tells a row by was `locks_at`.
+  std::int64_t cpu_shown_ns = 0;  // the thread's charged processor time as it was last shown
+  // Locks taken in a row, since the value by which allocation_cost.cc tells a row was `locks_at`.
   int locks = 0;
   std::int64_t locks_at = 0;
 };
@@ -51,9 +52,9 @@ struct GuestThread {
 struct ProcessState {
   enum Mode : std::uint32_t { kFresh = 0, kAttached = 1, kPassThrough = 2 };
   Mode mode;
-  bool has_timer_fds;  // what timer_fds.h remembers is of this process
-  // The process's broker (descriptor_broker.h): its number, which the kernel clears at its end; how
-  // far it is; and that a thread is making one.
+  bool has_timer_fds;  // the timers that timer_fds.h remembers are of this process
+  // The process's broker (descriptor_broker.h): the broker's number, which the kernel clears at its
+  // end; how far the broker is; and that a thread is making one.
   std::atomic<int> broker;
   std::atomic<std::uint32_t> broker_state, makes_broker;
 };
@@ -69,11 +70,11 @@ extern int g_broker_fd;  // the broker's connection, likewise; -1: there are non
 // Attaches the process or thread if it is not yet; null: let the call through.
 GuestThread* CurrentSlow();
 
-// The calling thread's state where other threads find the same `t_thread`: those that were made by
-// the system call without CLONE_SETTLS have their maker's thread-local storage
+// The calling thread's state where other threads find the same `t_thread`: threads that were made
+// by the system call without CLONE_SETTLS have their maker's thread-local storage
 // (shared_storage.cc).
 GuestThread& StateInSharedStorage();
-// In the child of a fork, whose threads they are not.
+// For the child of a fork: the sharers are not its threads.
 void ForgetSharers();
 
 // The calling thread's own state. A child by fork or by a bare clone still has its parent's slot in
@@ -100,31 +101,32 @@ inline GuestThread* Current() {
 // Charges a set cost: of a call, or of an allocation.
 void Charge(shm::ClockPage& page, std::int64_t cost_ns);
 
-// Where only its gate holds the thread: false if it runs on though others have their turn.
+// Where only its gate holds the thread: false if the thread runs on though others have their turn.
 inline bool IsDispatched(const GuestThread& thread) { return thread.slot->clock.horizon_ns != 0; }
 
-// Whom an interposed call concerns. One that concerns nobody but its thread neither does anything
-// that others could see nor looks at what they do: it reads a clock.
+// Whether an interposed call concerns others. A call that concerns nobody but its thread neither
+// does anything that others could see nor looks at what they do: it reads a clock.
 enum class Concern { kOthers, kNobody };
 
 // Counts an interposed call, and charges it where it has a set cost. Where nothing but its gate
-// keeps the thread from running on, it first waits there until it may; for a call that concerns
-// nobody only if it has not come back from there, or if its last call concerned others.
+// keeps the thread from running on, the thread first waits at the gate until it may; for a call
+// that concerns nobody, only if the thread has not come back from there, or if its last call
+// concerned others.
 void CountCall(GuestThread& thread, Concern concern);
 
-// The thread is about to do what others may see, as a descriptor that becomes ready.
+// The thread is about to do something that others may see, as a descriptor that becomes ready.
 inline void BeginChange(GuestThread& thread) { thread.in_call = true; }
 
-// The same as Current for an interposed call, which it counts where calls are counted.
+// As Current, for an interposed call, which is counted where calls are counted.
 inline GuestThread* Enter(Concern concern = Concern::kOthers) {
   GuestThread* t = Current();
   if (t != nullptr && __builtin_expect(t->slot->clock.counts_work != 0, 0)) CountCall(*t, concern);
   return t;
 }
 
-// An interposed call, from here to the end of the scope: the same as a pointer to the thread, null
-// where the call is to be let through. Meanwhile the coordinator sees that the thread may be about
-// to look at what others do, or to do something to them.
+// An interposed call, from here to the end of the scope. The object is used as a pointer to the
+// thread, null where the call is to be let through. Meanwhile the coordinator sees that the thread
+// may be about to look at what others do, or to do something to them.
 class Entered {
  public:
   // `is_sound`: false for a call that the kernel will refuse, which is let through.
@@ -144,7 +146,7 @@ class Entered {
   GuestThread* operator->() const { return thread_; }
 
  private:
-  // No other thread writes it.
+  // No other thread writes the count.
   void Count(std::uint32_t more) const {
     std::atomic<std::uint32_t>& calls = thread_->slot->open_calls;
     calls.store(calls.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);

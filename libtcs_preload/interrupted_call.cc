@@ -18,7 +18,7 @@ constexpr unsigned char kSyscall[] = {0x0f, 0x05};
 constexpr greg_t kSize = sizeof kSyscall;
 constexpr greg_t kResumeFlag = 1 << 16;  // an interrupt's own
 
-// Handed over, unless the shim makes them.
+// These calls are handed over, unless the shim makes them.
 constexpr int kNeverRestarted[] = {SYS_nanosleep,  SYS_clock_nanosleep, SYS_poll,
                                    SYS_ppoll,      SYS_select,          SYS_pselect6,
                                    SYS_epoll_wait, SYS_epoll_pwait,     SYS_epoll_pwait2};
@@ -26,8 +26,8 @@ constexpr int kRestarted[] = {SYS_futex_waitv, SYS_read,     SYS_readv,    SYS_w
                               SYS_writev,      SYS_recvfrom, SYS_recvmsg,  SYS_recvmmsg,
                               SYS_sendto,      SYS_sendmsg,  SYS_sendmmsg, SYS_accept,
                               SYS_accept4,     SYS_connect,  SYS_wait4,    SYS_waitid};
-// The kernel carries them out itself. Of what is in no list (clone), the kernel may make calls
-// again for reasons of its own.
+// The kernel carries these calls out itself. It may make calls that are in no list (clone) again
+// for reasons of its own.
 constexpr int kRestartedInKernel[] = {SYS_flock,     SYS_fcntl,           SYS_open,
                                       SYS_openat,    SYS_openat2,         SYS_creat,
                                       SYS_ioctl,     SYS_pread64,         SYS_pwrite64,
@@ -43,8 +43,8 @@ bool IsIn(const int (&list)[kCount], greg_t number) {
 
 }  // namespace
 
-// The instruction leaves in rcx where it returns to, and the flags in r11. That both are there
-// already when a thread is about to execute it is a matter of one instruction in a tight loop.
+// The syscall instruction leaves in rcx where it returns to, and the flags in r11. Only at one
+// instruction in a tight loop are both there already when a thread is about to execute it.
 bool InterruptedCall::IsMadeAgain() const {
   if (registers_[REG_RCX] != registers_[REG_RIP] + kSize) return false;
   if (((registers_[REG_R11] ^ registers_[REG_EFL]) & ~kResumeFlag) != 0) return false;

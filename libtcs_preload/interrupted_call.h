@@ -9,7 +9,7 @@ namespace tcs::preload {
 
 // How a call ends natively when a handler has run while it waited.
 enum class EndBySignal {
-  kNone,           // it never waits, or is made again whatever the handler's flags are
+  kNone,           // the call never waits, or is made again whatever the handler's flags are
   kUnlessRestart,  // with EINTR, unless the handler has SA_RESTART
   kAlways,         // with EINTR
 };
@@ -21,8 +21,8 @@ class InterruptedCall {
   // The kernel makes a call again when the handler returns.
   bool IsMadeAgain() const;
   EndBySignal HowItEnds() const;
-  // It is one of those of HowItEnds that wait for the coordinator's answer instead of the kernel
-  // (coordinator/os/trap.cc).
+  // The call is one of those of HowItEnds that wait for the coordinator's answer instead of the
+  // kernel (coordinator/os/trap.cc).
   bool IsHandedOver() const;
   void FailWithEintr();
 

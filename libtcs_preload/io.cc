@@ -1,7 +1,7 @@
 // Reading descriptors that can make a program wait: sockets, pipes, terminals.
 //
-// Kernel-carried data is there at once for anybody who looks. So a read waits until nobody can
-// write at an earlier virtual time (and a write until nobody can look at an earlier one:
+// Kernel-carried data is there at once for any thread that looks. So a read waits until no thread
+// can write at an earlier virtual time (and a write until no thread can look at an earlier one:
 // writes.cc).
 #include <errno.h>
 #include <sys/socket.h>
@@ -32,7 +32,7 @@ using namespace tcs::preload;
 
 namespace {
 
-// Whether what a call with these flags receives is not there any more.
+// Whether a call with these flags takes away what it receives.
 bool Takes(int flags) { return (flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0; }
 
 // With MSG_WAITALL a stream gives all that is asked for, or what there is at its end.
@@ -90,7 +90,7 @@ long ReadOnce(int fd, void* buffer, std::size_t size) {
   return Completed(buffer, size, got, read);
 }
 
-// `is_beyond`: of such buffers the kernel never waits for anything to come into them.
+// `is_beyond`: the kernel never waits for anything to come into such buffers.
 template <class Call>
 ssize_t ReadInto(int fd, const iovec* iov, int count, bool is_beyond, Call call) {
   const auto repeated = [&](int from, long got) {
@@ -130,8 +130,8 @@ TCS_EXPORT ssize_t readv(int fd, const iovec* iov, int count) {
 
 namespace {
 
-// `call(fd, flags)`: recvfrom or recvmsg. With MSG_WAITALL, where ReceiveAll is not for it, it
-// waits for more than what a form that cannot wait takes.
+// `call(fd, flags)`: recvfrom or recvmsg. With MSG_WAITALL, where ReceiveAll is not for the call,
+// the call waits for more than what a form that cannot wait takes.
 template <class Call>
 ssize_t Receive(int fd, int flags, Call call) {
   const auto look = [&](int from) { return call(from, flags | MSG_DONTWAIT); };
@@ -185,7 +185,8 @@ TCS_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
   return Receive(fd, flags, call);
 }
 
-// One message is waited for; those that are there with it come along. A timeout is a virtual one.
+// The call waits for one message; other messages that are there with it come along. A timeout is a
+// virtual one.
 TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, timespec* timeout) {
   const Entered t;
   if (t == nullptr) {
@@ -215,7 +216,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   OutsidePlace* place = OutsideOf(fd);
   if (never_waits && IsHiddenFromLook(*t, fd)) return Fail(EAGAIN);
   if (never_waits || (!IsHidden(*t, place) && PollNow(fd, POLLIN))) {
-    // All that are there come along, so all that are from before must be there.
+    // All messages that are there come along, so all messages from before must be there.
     HoldForRead(*t);
     const long result = take(fd);
     if (never_waits || result != -EAGAIN) {

@@ -10,7 +10,8 @@ namespace {
 using shm::IpcEvent;
 using shm::IpcKind;
 
-// What the thread itself has noted since its last dispatch is not in the table yet; null: nothing.
+// The thread's own note since its last dispatch, which is not in the table yet; null: there is
+// none.
 const shm::IpcNote* OwnNote(const GuestThread& thread, std::uint64_t object, IpcEvent event) {
   const shm::ThreadSlot& slot = *thread.slot;
   for (std::uint32_t i = slot.ipc_count.load(std::memory_order_relaxed); i > 0; --i) {
@@ -21,7 +22,7 @@ const shm::IpcNote* OwnNote(const GuestThread& thread, std::uint64_t object, Ipc
   return nullptr;
 }
 
-// Of the table and what the thread has noted; 0: never.
+// The time by the table and the thread's own notes; 0: never.
 std::int64_t TimeOf(const GuestThread& thread, std::uint64_t object, IpcEvent event) {
   if (const shm::IpcNote* note = OwnNote(thread, object, event); note != nullptr) {
     return note->event == event ? note->at_ns : 0;
@@ -41,7 +42,7 @@ void Show(GuestThread& thread, IpcKind kind, int id, IpcEvent event, __time_t* s
 
 }  // namespace
 
-// A handler that notes something meanwhile may have it overwritten.
+// A note that a handler makes meanwhile may be overwritten.
 void NoteIpc(GuestThread& thread, IpcKind kind, int id, IpcEvent event) {
   shm::ThreadSlot& slot = *thread.slot;
   const std::uint64_t object = shm::IpcObject(kind, id);
@@ -54,7 +55,7 @@ void NoteIpc(GuestThread& thread, IpcKind kind, int id, IpcEvent event) {
       return;
     }
   }
-  if (count >= shm::kMostIpcNotes) {  // the coordinator takes them over at any stop
+  if (count >= shm::kMostIpcNotes) {  // the coordinator takes the notes over at any stop
     Exchange(thread, Request{.kind = shm::NotificationKind::kPassOn});
     count = 0;
   }

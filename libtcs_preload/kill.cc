@@ -1,5 +1,5 @@
-// Signals to others. The kernel carries and delivers them; that somebody who waits has to run a
-// handler now, the coordinator learns from the sender.
+// Signals to others. The kernel carries and delivers them. The coordinator learns from the sender
+// that a waiting thread has to run a handler now.
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>
@@ -18,7 +18,7 @@ using tcs::shm::kSendsItself;
 
 namespace {
 
-// As for kill(2); of a thread, if it is known.
+// The receiver of a signal: as for kill(2), and the thread, if it is known.
 struct Receiver {
   pid_t process;
   pid_t thread = 0;
@@ -29,10 +29,10 @@ Receiver ReceiverOf(pthread_t thread) {
   return {static_cast<pid_t>(RawSyscall(SYS_getpid)), tid > 0 ? tid : 0};
 }
 
-// Sending is a write: no handler may run at an earlier time. A `call`
-// that returns 0 has sent something. A signal of 0 only asks whether somebody is there. Should the
-// thread be stopped between the signal and word of it, the coordinator sees from its slot that
-// there may be one: before it has seen to the receiver nobody else may run.
+// Sending is a write: no handler may run at an earlier time. A `call` that returns 0 has sent
+// something. A signal of 0 only asks whether somebody is there. Should the thread be stopped
+// between the signal and word of it, the coordinator sees from the thread's slot that there may be
+// a signal: before the coordinator has seen to the receiver no other thread may run.
 template <class Call>
 auto SendSignal(Receiver receiver, int signal, std::uint32_t by, Call call) {
   const Entered t;
@@ -53,9 +53,10 @@ auto SendSignal(Receiver receiver, int signal, std::uint32_t by, Call call) {
   return result;
 }
 
-// Sends one as SendSignal's call. Where only gates keep threads apart it must come to no thread
-// that is about to make a call which the kernel hands over: once more it is the coordinator's turn,
-// who sees to that (engine/gate_keeper.h). The C library's calls are handed over themselves.
+// Sends a signal as SendSignal's call. Where only gates keep threads apart the signal must come to
+// no thread that is about to make a call which the kernel hands over: once more it is the turn of
+// the coordinator, which sees to that (engine/gate_keeper.h). The C library's calls are handed over
+// themselves.
 template <class... Args>
 long SendRaw(long number, Args... args) {
   GuestThread* t = IfAttached();
@@ -95,8 +96,8 @@ TCS_EXPORT int pthread_sigqueue(pthread_t thread, int signal, const sigval value
                     [&] { return TCS_REAL(pthread_sigqueue)(thread, signal, value); });
 }
 
-// The C library's own signal for this; it sends it only to threads in system calls of its making.
-// What the shim waits in is to end by it, too.
+// The C library sends its own signal for this only to threads in system calls of its making. The
+// shim's waits are to end by that signal, too.
 TCS_EXPORT int pthread_cancel(pthread_t thread) {
   constexpr int kCancelSignal = 32;
   const bool own = pthread_equal(thread, pthread_self()) != 0;

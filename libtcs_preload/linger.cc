@@ -22,10 +22,10 @@ namespace tcs::preload {
 
 namespace {
 
-// Of this process, or of one that it was forked from.
+// A socket of this process lingers, or of one that it was forked from.
 std::atomic<bool> g_lingers{false};
 
-// How often a socket is looked at that does not tell when all of it has been sent.
+// How often the thread looks at a socket that does not tell when all of its data has been sent.
 constexpr std::int64_t kLookEveryNs = 1'000'000;
 
 int Asked(int fd, unsigned long what) {
@@ -43,7 +43,7 @@ std::int64_t LingersFor(int fd) {
   return std::int64_t{asked.l_linger} * 1'000'000'000;
 }
 
-// Of a connection that has ended the kernel waits for nothing more.
+// The kernel waits for nothing more of a connection that has ended.
 bool IsConnected(int fd) {
   std::uint8_t state = TCP_CLOSE;
   socklen_t size = sizeof state;
@@ -52,12 +52,13 @@ bool IsConnected(int fd) {
          state == TCP_CLOSING || state == TCP_LAST_ACK;
 }
 
-// What the other end has no room for is not sent yet. What is unread here resets the connection.
+// Data that the other end has no room for is not sent yet. Unread data at this end resets the
+// connection.
 bool MayWait(int fd) {
   return Asked(fd, SIOCOUTQNSD) != 0 && Asked(fd, SIOCINQ) == 0 && IsConnected(fd);
 }
 
-// Only the last descriptor lingers. Where nobody answers it is taken for the last one.
+// Only the last descriptor lingers. Where nobody answers the descriptor is taken for the last one.
 bool IsLast(int fd) {
   return RawSyscall(SYS_futex, 0, static_cast<long>(shm::kIsLastDescriptor), fd) != 0;
 }

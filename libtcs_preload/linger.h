@@ -7,12 +7,12 @@
 
 namespace tcs::preload {
 
-// What the program sets SO_LINGER to. From the first that lingers on, closing asks.
+// Notes what the program sets SO_LINGER to. From the first socket that lingers on, closing asks.
 void NoteLinger(const void* value, socklen_t size);
 
-// What closing the descriptor waits for, in virtual time. Afterwards the kernel closes the socket
-// without waiting. Does nothing to other descriptors, nor where another one, in any process of
-// the run, is of the same socket; errno is kept.
+// Waits, in virtual time, for what closing the descriptor waits for. Afterwards the kernel closes
+// the socket without waiting. Does nothing to other descriptors, nor where another descriptor, in
+// any process of the run, is of the same socket; errno is kept.
 void LingerBeforeClosing(int fd);
 
 }  // namespace tcs::preload

@@ -13,7 +13,7 @@ namespace {
 
 using shm::NotificationKind;
 
-constexpr unsigned long kMostLooks = 8;  // each is a system call; a hold is some dozens
+constexpr unsigned long kMostLooks = 8;  // each look is a system call; a hold is some dozens
 
 template <class T>
 bool SocketOption(int fd, int option, T* value) {

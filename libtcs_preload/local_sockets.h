@@ -13,16 +13,16 @@ namespace tcs::preload {
 // A look at the descriptor at `now_ns` by the thread's clock misses nothing, though others have not
 // come as far. Makes a system call.
 bool IsSafeLook(const GuestThread& thread, int fd, std::int64_t now_ns);
-// The same for several descriptors; false if there are too many to look at.
+// As IsSafeLook, for several descriptors; false if there are too many to look at.
 bool AreSafeLooks(const GuestThread& thread, const pollfd* fds, unsigned long count,
                   std::int64_t now_ns);
 
-// Before what is written goes to that address (null: to where the socket is connected). True if the
-// thread need not hold for the write any more: only its own robot's programs receive it, none of
-// which can look at an earlier time; or another robot's do, to which sockets were local so far, and
-// it has held.
+// Called before the written data goes to that address (null: to where the socket is connected).
+// True if the thread need not hold for the write any more: only its own robot's programs receive
+// the data, none of which can look at an earlier time; or programs of another robot do, to which
+// sockets were local so far, and the thread has held.
 bool ReachesSafely(GuestThread& thread, const void* address, socklen_t size);
-// The same for a message, which may carry descriptors that leave the robot.
+// As above, for a message, which may carry descriptors that leave the robot.
 bool ReachesSafely(GuestThread& thread, const msghdr& message);
 
 }  // namespace tcs::preload

@@ -29,7 +29,7 @@ bool HasRoom() {
 __attribute__((noinline)) int MainAtFixedAddress(int argc, char** argv, char** environment) {
   const auto here = reinterpret_cast<uintptr_t>(__builtin_frame_address(0));
   void* const room = alloca(here % kRoom);
-  __asm__ volatile("" : : "r"(room) : "memory");  // it stays, although nothing is in it
+  __asm__ volatile("" : : "r"(room) : "memory");  // the room stays, although nothing is in it
   const int status = g_main(argc, argv, environment);
   __asm__ volatile("" : : "r"(room) : "memory");  // no tail call
   return status;

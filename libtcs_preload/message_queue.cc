@@ -35,8 +35,8 @@ int ToDeadline(const timespec* given, std::int64_t* deadline_ns) {
   return IsValid(timeout) ? 0 : EINVAL;
 }
 
-// Makes `call(queue)` until it does not have to wait any more. It returns -ETIMEDOUT where it
-// would.
+// Makes `call(queue)` until the call does not have to wait any more. The call returns -ETIMEDOUT
+// where it would wait.
 template <class Call>
 long WaitAndCall(GuestThread& t, mqd_t queue, short events, std::int64_t deadline_ns, Call call) {
   CallFile file(t, queue);
@@ -76,7 +76,7 @@ long Send(GuestThread& t, mqd_t queue, const char* text, std::size_t size, unsig
   std::int64_t deadline;
   if (const int error = ToDeadline(timeout, &deadline); error != 0) return -error;
   HoldForWrite(t);
-  // The kernel may send a signal with it: see kill.cc.
+  // The kernel may send a signal with the message: see kill.cc.
   const bool notifies = g_header->queues_notify.load(std::memory_order_relaxed) != 0;
   std::atomic<std::uint32_t>& signals = t.slot->signals;
   const long result = WaitAndCall(t, queue, POLLOUT, deadline, [&](mqd_t to) {

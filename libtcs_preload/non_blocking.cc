@@ -45,7 +45,7 @@ bool ReadingMakesRoom(int fd) { return SocketOption(fd, SO_PROTOCOL, 0) != IPPRO
 
 bool ReceivesAtOnce(int fd, int flags) {
   if ((flags & MSG_DONTWAIT) != 0) return true;
-  // The errors of a socket are there or not; but sockets of this family have none, and overlook it.
+  // The errors of a socket are there or not; but UNIX sockets have none, and overlook the flag.
   return (flags & MSG_ERRQUEUE) != 0 && SocketOption(fd, SO_DOMAIN, AF_UNIX) != AF_UNIX;
 }
 

@@ -1,5 +1,5 @@
-// Opening files: one end of a FIFO waits for the other, and its opening ends others' waits. All
-// other files are opened by the kernel, at no cost but a look at what they are.
+// Opening files: one end of a FIFO waits for the other, and the opening of an end ends others'
+// waits. All other files are opened by the kernel, at no cost but a look at what they are.
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -36,7 +36,7 @@ bool WaitsForOtherEnd(int flags) {
   return (flags & (O_NONBLOCK | O_PATH | O_DIRECTORY)) == 0 && (flags & O_ACCMODE) != O_RDWR;
 }
 
-// Makes `call`, which opens `path` so.
+// Makes `call`, which opens `path` with `flags`.
 template <class Call>
 auto Opening(int folder, const char* path, int flags, bool cancellable, Call call) {
   GuestThread* t = Current();
@@ -58,7 +58,8 @@ auto Opening(int folder, const char* path, int flags, bool cancellable, Call cal
   return result;
 }
 
-// A device of the robot's. What has come while nobody had it open is not there, as at a real port.
+// Opens a device of the robot's. Data that has come while nobody had the device open is not there,
+// as at a real port.
 int OpenDevice(int folder, const char* file, int flags, mode_t mode) {
   const Entered t;
   if (t != nullptr) HoldForRead(*t);

@@ -97,7 +97,7 @@ void BeginLooks(GuestThread& thread, const pollfd* fds, unsigned long count) {
 
 long WithoutHidden(GuestThread& thread, pollfd* fds, unsigned long count, long found) {
   if (found <= 0 || !IsAnythingOutside()) return found;
-  // Hanging up and errors come from there, too.
+  // Hanging up and errors come from outside, too.
   constexpr auto kFromOutside =
       static_cast<short>(POLLIN | POLLRDNORM | POLLPRI | POLLRDHUP | POLLHUP | POLLERR);
   for (unsigned long i = 0; i < count; ++i) {
@@ -125,7 +125,7 @@ void HiddenMembers::Read(GuestThread& thread) {
   }
 }
 
-// What tells of a member once only is set up anew.
+// A member of which the set tells only once is set up anew.
 long HiddenMembers::TakeOut(epoll_event* events, long found) const {
   long left = 0;
   for (long i = 0; i < found; ++i) {

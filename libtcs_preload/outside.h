@@ -1,6 +1,7 @@
-// Files by which the program meets what is outside of the run (shm/outside_files.h): what has come
-// by them is there at once for anybody who looks, but to be seen only at the virtual time that the
-// real time stands for which it took. What the program does with them the coordinator is told.
+// Files by which the program meets what is outside of the run (shm/outside_files.h): data that has
+// come by such a file is there at once for any thread that looks, but to be seen only at the
+// virtual time that the real time stands for which it took. The coordinator is told what the
+// program does with these files.
 //
 // Nothing here costs anything where the run knows of no such file. Async-signal-safe; errno stays.
 #pragma once
@@ -21,29 +22,32 @@ using OutsidePlace = const shm::OutsideFiles::Place;
 // False where the run knows of no such file.
 bool IsAnythingOutside();
 
-// Null: the file is none of these.
+// Null: the file is no such file.
 OutsidePlace* OutsideOf(int fd);
 
-// What is there in the file is not to be seen now.
+// True if the data that is there in the file is not to be seen now.
 bool IsHidden(GuestThread& thread, OutsidePlace* place);
-// The same; kAll: that a connection has been made, and it can be written to, is hidden, too.
+// As IsHidden; kAll: the fact that a connection has been made, and can be written to, is hidden,
+// too.
 enum class Hides { kNothing, kInput, kAll };
 Hides HiddenOf(GuestThread& thread, OutsidePlace* place);
 
-// The same for a look that does not wait: all that is to be seen now is there when this returns.
+// As IsHidden, for a look that does not wait: all data that is to be seen now is there when the
+// function returns.
 bool IsHiddenFromLook(GuestThread& thread, int fd);
 
 // The thread is about to look into the epoll set. Returns as IsHiddenFromLook.
 void BeginLookIntoSet(GuestThread& thread, int epoll_fd);
 
-// The same for those that poll is to look at.
+// The thread is about to look at the descriptors by poll. Returns as IsHiddenFromLook.
 void BeginLooks(GuestThread& thread, const pollfd* fds, unsigned long count);
 
-// Of what poll has found, without what is hidden. Returns how many descriptors are left of `found`.
+// Takes what is hidden out of what poll has found. Returns how many descriptors are left of
+// `found`.
 long WithoutHidden(GuestThread& thread, pollfd* fds, unsigned long count, long found);
 
-// An epoll set, as it is before the kernel is asked what there is in it: what it then tells of
-// hidden members is taken out again, and told of later.
+// An epoll set, as it is before the kernel is asked what there is in it: events that it then tells
+// of hidden members are taken out again, and told of later.
 class HiddenMembers {
  public:
   HiddenMembers(GuestThread& thread, int epoll_fd);
@@ -60,11 +64,13 @@ class HiddenMembers {
   EpollMember members_[kMost];
 };
 
-// A GPU, an accelerator, a camera: they compute and see by themselves. `path` has just been opened.
+// True for a GPU, an accelerator, a camera: such devices compute and see by themselves. `path` has
+// just been opened.
 bool IsDeviceOutside(const char* path);
 void NoteOpens(int fd);
 
-// What there is before the program sends by the file: what it has not taken by then is no answer.
+// The state before the program sends by the file: input that the program has not taken by then is
+// no answer.
 struct OutsideAsk {
   std::uint64_t begun_tsc;
   bool has_input;
@@ -78,7 +84,8 @@ void NoteAsks(GuestThread& thread, int fd, const OutsideAsk& ask);
 void NoteTakes(GuestThread& thread, int fd);
 void NoteCloses(int fd);
 
-// An ioctl is over: if it had to wait for what is outside, this returns when that is to be seen.
+// An ioctl is over: if it had to wait for something outside, this function returns when that is to
+// be seen.
 void EndIoctl();
 
 }  // namespace tcs::preload

@@ -42,7 +42,8 @@ int SuspendWith(GuestThread& t, const unsigned long* mask) {
   if (EndsWaits(pending & ~kept) || IsShutDown()) {
     RawSyscall(SYS_rt_sigsuspend, Arg(&kept), kSetSize);  // handled at once
   } else {
-    // Until the kernel puts the mask in place no handler may run: it would not end the wait.
+    // Until the kernel puts the mask in place no handler may run: such a handler would not end the
+    // wait.
     const unsigned long all = ~0ul;
     unsigned long before = 0;
     RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before), kSetSize);

@@ -1,4 +1,5 @@
-// Reads at a place in a file. They wait for nothing, and are the kernel's but for random numbers.
+// Reads at a place in a file. Such reads wait for nothing, and are the kernel's but for random
+// numbers.
 #include <pthread.h>
 #include <sys/types.h>
 #include <sys/uio.h>

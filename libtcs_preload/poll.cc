@@ -29,11 +29,11 @@ namespace {
 
 constexpr timespec kNow{};
 
-// The shape of all of them: nothing there: wait, and probe again. Something there, or no wait
+// The shape of all these calls. Nothing there: wait, and probe again. Something there, or no wait
 // wanted: hold, so that the probe finds all that was sent until now. `is_ready` takes nothing away,
-// `probe` may (epoll). Both return what the kernel returns, 0 for "nothing"; `hold` returns once a
-// look misses nothing; `wait(deadline, signals)` returns a WaitResult. A signal ends these calls if
-// a handler runs and nothing was found, those without a timeout too but for epoll's
+// `probe` may (epoll). Both functions return what the kernel returns, 0 for "nothing"; `hold`
+// returns once a look misses nothing; `wait(deadline, signals)` returns a WaitResult. A signal ends
+// these calls if a handler runs and nothing was found, calls without a timeout too, but for epoll's
 // (`looks_first`).
 template <class IsReady, class Hold, class Probe, class Wait>
 long ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const MaskedWait& masked,
@@ -65,8 +65,8 @@ int CallWithMask(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, 
   return static_cast<int>(ToErrno(found));
 }
 
-// The files that poll or select has found under the numbers that it was given. It looks for them by
-// their numbers each time, but is woken by the files only.
+// The files that poll or select has found under the numbers that it was given. The call looks for
+// them by their numbers each time, but is woken by the files only.
 class PolledFiles {
  public:
   explicit PolledFiles(GuestThread& thread) : thread_(thread) {}
@@ -147,7 +147,8 @@ long PeekEvents(int epfd) {
 int EpollNs(GuestThread& t, int epfd, epoll_event* events, int max, std::int64_t timeout_ns,
             const sigset_t* mask) {
   if (!IsReadableMask(mask)) return Fail(EFAULT);
-  // What no call could hand over the kernel refuses before it looks; a wait would come first here.
+  // The kernel refuses arguments for which no call could hand over events before it looks; a wait
+  // would come first here.
   constexpr int kMostEvents = INT_MAX / static_cast<int>(sizeof(epoll_event));
   if (max <= 0 || max > kMostEvents || reinterpret_cast<std::intptr_t>(events) < 0) {
     return static_cast<int>(ToErrno(RawSyscall(SYS_epoll_wait, epfd, Arg(events), max, 0)));
@@ -225,7 +226,7 @@ TCS_EXPORT int select(int n, fd_set* r, fd_set* w, fd_set* e, timeval* timeout) 
   const std::int64_t timeout_ns = ToNs(*timeout);
   const std::int64_t start = NowNs(*t);
   const int found = SelectNs(*t, n, r, w, e, timeout_ns, nullptr);
-  // Linux leaves in it what has not been waited.
+  // Linux leaves in `timeout` the time that has not been waited.
   const std::int64_t left = timeout_ns - (NowNs(*t) - start);
   *timeout = ToTimeval(left > 0 ? left : 0);
   return found;

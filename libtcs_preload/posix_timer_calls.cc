@@ -67,7 +67,7 @@ int KindOfEvent(GuestThread& t, const sigevent& event, TimerKind* kind) {
   }
 }
 
-// What its threads need: from the program's attributes, as they are now.
+// Keeps what the timer's threads need: from the program's attributes, as they are now.
 void KeepThread(const sigevent& event, PosixTimer* timer) {
   timer->function = event.sigev_notify_function;
   timer->value = event.sigev_value;
@@ -104,8 +104,8 @@ int Make(GuestThread& t, const sigevent& event, const TimerKind& kind, PosixTime
   return error;
 }
 
-// What the timer's clock shows, in the coordinator's terms: virtual or charged time. A clock of
-// another thread is read where that thread last stopped.
+// The time that the timer's clock shows, in the coordinator's terms: virtual or charged time. A
+// clock of another thread is read where that thread last stopped.
 std::int64_t NowOn(GuestThread& t, const PosixTimer& timer) {
   TimerKind kind;
   KindOfClock(t, timer.clock, &kind);
@@ -161,7 +161,7 @@ TCS_EXPORT int timer_delete(timer_t name) noexcept {
     FreePosixTimer(timer);
     return 0;
   }
-  // Its helper wakes.
+  // Wakes the timer's helper.
   const std::uint64_t once = 1;
   if (RawSyscall(SYS_ioctl, timer->timer_fd, TFD_IOC_SET_TICKS, Arg(&once)) != 0) {
     const itimerspec past{{0, 0}, {0, 1}};

@@ -117,8 +117,8 @@ void FreePosixTimer(PosixTimer* timer) {
 }
 
 bool StartTimerThread(PosixTimer* timer) {
-  // It takes no signal of the program's, nor do the threads that it starts, as in the C library,
-  // which needs two itself: SIGCANCEL and SIGSETXID.
+  // The helper takes no signal of the program's, nor do the threads that it starts, as in the C
+  // library, which needs two itself: SIGCANCEL and SIGSETXID.
   const unsigned long all = ~(3ul << 31);
   unsigned long before = 0;
   RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before), sizeof all);

@@ -26,7 +26,7 @@ struct PosixTimer {
 
 // Null if no room is left.
 PosixTimer* ClaimPosixTimer();
-// Null if there is none of this name.
+// Null if there is no timer of this name.
 PosixTimer* FindPosixTimer(timer_t name);
 void FreePosixTimer(PosixTimer* timer);
 

@@ -1,7 +1,7 @@
 // Posting is to look like sending to the program, errors included, so the kernel is asked first
-// whether it would send: by a send of as many bytes from memory that nobody can read. It checks all
-// that it checks of a socket, an address and a size, gives the socket a port where it has none, and
-// then finds nothing to send (EFAULT).
+// whether it would send: by a send of as many bytes from memory that nobody can read. The kernel
+// then makes all its checks of a socket, an address and a size, gives the socket a port where it
+// has none, and finds nothing to send (EFAULT).
 #include <errno.h>
 #include <linux/sockios.h>
 #include <netinet/in.h>
@@ -24,11 +24,11 @@ namespace tcs::preload {
 
 namespace {
 
-// Others do more than to send.
+// Other flags do more than to send.
 constexpr int kKnownFlags = MSG_DONTWAIT | MSG_NOSIGNAL;
 constexpr std::size_t kMostParts = 16;
 
-std::atomic<void*> g_unreadable;  // a page; null: it has not been needed
+std::atomic<void*> g_unreadable;  // a page; null: the page has not been needed
 
 template <class T>
 bool Has(int fd, int level, int option, T value) {
@@ -38,7 +38,7 @@ bool Has(int fd, int level, int option, T value) {
 }
 
 // Whether the socket is of the kind, and in the network, that the receivers are of. A cookie is one
-// socket's for ever, and neither ever changes; so a socket is asked once.
+// socket's for ever, and neither kind nor network ever changes; so a socket is asked once.
 bool IsOfTheirKind(GuestThread& thread, int fd, std::uint64_t network) {
   std::uint64_t cookie = 0;
   socklen_t size = sizeof cookie;
@@ -59,8 +59,8 @@ bool IsOfTheirKind(GuestThread& thread, int fd, std::uint64_t network) {
   return true;
 }
 
-// A UDP socket that sends at once, and does no more: it puts nothing together, is not bound to a
-// device, and notes no times.
+// True for a UDP socket that sends at once, and does no more: the socket puts nothing together, is
+// not bound to a device, and notes no times.
 bool SendsAtOnce(int fd) {
   int queued = 0;
   return RawSyscall(SYS_ioctl, fd, SIOCOUTQ, Arg(&queued)) == 0 && queued == 0 &&
@@ -68,12 +68,12 @@ bool SendsAtOnce(int fd) {
          Has(fd, SOL_SOCKET, SO_TIMESTAMPING, 0);
 }
 
-// Where the bytes of a message are. Read once: other threads of the program may change what says
-// so.
+// The places of the bytes of a message. They are read once: other threads of the program may change
+// the list of them.
 struct Parts {
   iovec at[kMostParts];
   std::size_t count = 0;
-  std::size_t size = 0;  // of all; 0 where they are not all there, or too many
+  std::size_t size = 0;  // of all parts; 0 where they are not all there, or too many
 };
 
 void Read(const msghdr& message, Parts* parts) {
@@ -104,7 +104,7 @@ void* Unreadable() {
   return reinterpret_cast<void*>(at);
 }
 
-// What the kernel says of a send of so many bytes that it cannot read: -EFAULT if all else is well.
+// The kernel's answer to a send of `size` bytes that it cannot read: -EFAULT if all else is well.
 long Try(int fd, const msghdr& message, std::size_t size, int flags) {
   static_assert(shm::CommandRing::kMostSize <= kPageSize);
   void* page = Unreadable();

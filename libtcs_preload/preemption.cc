@@ -8,7 +8,7 @@
 #include "libtcs_preload/spinning/pauses.h"
 #include "shm/clock_page.h"
 
-// What the kernel has a handler return to: rt_sigreturn, which takes no arguments.
+// The code that the kernel has a handler return to: rt_sigreturn, which takes no arguments.
 __asm__(
     ".text\n"
     ".type tcs_return_from_handler, @function\n"
@@ -24,7 +24,7 @@ namespace {
 
 using Handler = void (*)(int, siginfo_t*, void*);
 
-// The kernel's.
+// The action of a signal, as the kernel has it.
 struct Action {
   Handler handler;
   unsigned long flags;
@@ -48,7 +48,7 @@ void StopHere(int signal, siginfo_t* info, void* context) {
     return;
   }
   if (OwnState().attaching) return;
-  // The thread, or its process, was made past the shim and computes: it goes to the gate by
+  // The thread, or its process, was made past the shim and computes: the thread goes to the gate by
   // attaching.
   GuestThread* const attached = IfAttached();
   if (attached == nullptr) {
@@ -64,8 +64,8 @@ void StopHere(int signal, siginfo_t* info, void* context) {
   }
   if (!IsForThisDispatch(*thread.slot, *info)) return;
   if (IsAtGate(thread)) {
-    // With levels a signal of the program's has brought it here, whose handler is to run when the
-    // thread is dispatched. Without them the handler ends the wait.
+    // With levels a signal of the program's has brought the thread here, whose handler is to run
+    // when the thread is dispatched. Without levels the handler ends the wait.
     if (g_header->is_unprivileged == 0) AwaitDispatch(thread);
     return;
   }
@@ -82,7 +82,7 @@ void AllowPreemption() {
   if (now.handler != StopHere) {
     const bool is_libcs = (now.flags & SA_SIGINFO) != 0;
     if (is_libcs) g_libcs = now.handler;
-    // No other handler runs on top of it: the thread is not dispatched there.
+    // No other handler runs on top of this one: the thread is not dispatched there.
     const Action ours{StopHere, SA_SIGINFO | SA_RESTART | SA_ONSTACK | kHasRestorer,
                       tcs_return_from_handler, ~0ul};
     RawSyscall(SYS_rt_sigaction, shm::kPreemptionSignal, Arg(&ours), 0, kSetSize);
@@ -99,7 +99,7 @@ WithoutPreemption::WithoutPreemption() {
   RawSyscall(SYS_rt_sigaction, shm::kPreemptionSignal, Arg(&ignored), Arg(&before_), kSetSize);
 }
 
-// Nothing was executed.
+// No program was executed.
 WithoutPreemption::~WithoutPreemption() {
   if (OwnSignals() == 0) return;
   RawSyscall(SYS_rt_sigaction, shm::kPreemptionSignal, Arg(&before_), 0, kSetSize);

@@ -4,11 +4,11 @@
 // has computed: results are the same.
 //
 // There the signal interrupts no wait of the program's: threads that wait are not sent it, and
-// where one has come to a wait meanwhile the signal is blocked until that is over.
+// where a thread has come to a wait meanwhile the signal is blocked until the wait is over.
 //
-// Under set costs it goes to threads with levels, too, whose turn has ended anywhere but at their
-// gates, or to whom a signal has come there. Should the processor be free before their next turns,
-// they execute nothing of their programs': this signal's handler runs before all others.
+// Under set costs the signal goes to threads with levels, too, whose turn has ended anywhere but at
+// their gates, or to whom a signal has come there. Should the processor be free before their next
+// turns, they execute nothing of their programs': this signal's handler runs before all others.
 #pragma once
 
 #include "libtcs_preload/guest.h"
@@ -19,9 +19,9 @@ namespace tcs::preload {
 // the C library has taken the signal for itself when it made its first thread.
 void AllowPreemption();
 
-// While it lives the signal does nothing to the process, not even to the program that it executes
-// meanwhile: until that has attached, it has no handler, and the signal would end it. The kernel
-// keeps what is ignored across execve.
+// While this object lives the signal does nothing to the process, not even to the program that the
+// process executes meanwhile: until that program has attached, it has no handler, and the signal
+// would end it. The kernel keeps ignored signals ignored across execve.
 class WithoutPreemption {
  public:
   WithoutPreemption();
@@ -39,8 +39,9 @@ inline unsigned long OwnSignals() {
   return has_one ? 1ul << (shm::kPreemptionSignal - 1) : 0;
 }
 
-// Those of them that are blocked while a thread waits. With levels a thread that waits has to hear
-// of it: a signal that has ended its wait may have come, and have its handler run too early.
+// The signals of OwnSignals that are blocked while a thread waits. With levels a thread that waits
+// has to hear of the own signal: another signal that has ended its wait may have come, and have its
+// handler run too early.
 inline unsigned long OwnSignalsHeldInWaits() {
   return g_header != nullptr && g_header->is_unprivileged != 0 ? OwnSignals() : 0;
 }

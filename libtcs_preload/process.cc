@@ -32,7 +32,7 @@ extern char** environ;
 
 namespace tcs::preload {
 
-// A handler may make one, too, while the thread does.
+// A handler may make a thread or a process, too, while the thread does.
 void BeginAnnouncement(GuestThread* thread) {
   if (thread != nullptr) thread->slot->announces.fetch_add(1, std::memory_order_relaxed);
 }
@@ -49,8 +49,8 @@ void TellSpawned(GuestThread& t, pid_t pid) {
 
 namespace {
 
-// Makes `probe` (a wait call with WNOHANG) until it has something. It returns 0 for "no child has
-// changed yet".
+// Makes `probe` (a wait call with WNOHANG) until it has something. `probe` returns 0 for "no child
+// has changed yet".
 template <class Probe>
 long WaitForChild(GuestThread& t, pid_t which, int options, Probe probe) {
   static_assert(WSTOPPED == WUNTRACED);
@@ -71,7 +71,7 @@ long WaitForChild(GuestThread& t, pid_t which, int options, Probe probe) {
   }
 }
 
-// Of a child that has ended: what was charged instead of what the host has measured.
+// Shows the charge of a child that has ended, instead of what the host has measured.
 void ShowChildUsage(GuestThread& t, pid_t child, rusage* usage) {
   const Reply reply = Exchange(t, Request{.kind = NotificationKind::kChildUsage, .args = {child}});
   if (reply.values[0] >= 0) ChargeInsteadOfMeasure(usage, reply.values[0]);
@@ -222,7 +222,7 @@ TCS_EXPORT int posix_spawnp(pid_t* pid, const char* file, const posix_spawn_file
                        envp);
 }
 
-// Those of glibc 2.39, by what there was before.
+// The functions that are new in glibc 2.39, by the functions that there were before.
 extern "C" {
 TCS_EXPORT int pidfd_spawn(int* pidfd, const char* path, const posix_spawn_file_actions_t* actions,
                            const posix_spawnattr_t* attributes, char* const argv[],

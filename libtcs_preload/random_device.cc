@@ -1,6 +1,6 @@
 // std::random_device of libstdc++. By default it draws by instructions of the processor (rdseed,
-// rdrand), which nobody can replace: a virtual machine alone could trap them. So where draws
-// repeat it is told to read the kernel's device instead, which the shim sees.
+// rdrand), which nobody can replace: a virtual machine alone could trap them. So where draws repeat
+// std::random_device is told to read the kernel's device instead, which the shim sees.
 #include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,7 +42,7 @@ bool DrawsByInstructions(const char* token, std::size_t size) {
 
 using Init = void(void* device, const void* token);
 
-// The caller's own, where the C++ library is there for some libraries only.
+// The function of the caller's own library, where the C++ library is there for some libraries only.
 Init* Real(const char* name, const void* caller) {
   void* found = dlsym(RTLD_NEXT, name);
   Dl_info info{};
@@ -50,7 +50,7 @@ Init* Real(const char* name, const void* caller) {
     void* library = dlopen(info.dli_fname, RTLD_LAZY | RTLD_NOLOAD);
     if (library != nullptr) found = dlsym(library, name);
   }
-  if (found == nullptr) abort();  // nobody calls what is nowhere
+  if (found == nullptr) abort();  // nobody calls a function that is nowhere
   return reinterpret_cast<Init*>(found);
 }
 
@@ -58,8 +58,8 @@ bool AreInstructionsReplaced() { return Current() != nullptr && DrawsRepeat(); }
 
 }  // namespace
 
-// std::random_device::_M_init(const std::string&), which the constructors call. These throw
-// exceptions, so that nothing may be left to do after the real ones.
+// std::random_device::_M_init(const std::string&), which the constructors call. The real functions
+// throw exceptions, so that nothing may be left to do after them.
 #define TCS_INIT _ZNSt13random_device7_M_initERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEE
 #define TCS_INIT_OLD _ZNSt13random_device7_M_initERKSs
 #define TCS_NAME(name) TCS_NAME_OF(name)

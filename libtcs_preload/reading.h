@@ -26,8 +26,8 @@
 
 namespace tcs::preload {
 
-// Who waits to write may find room after a read. Asked only where that has the thread wait for its
-// next call (CountCall).
+// A thread that waits to write may find room after a read. Whether a read makes room is asked only
+// where that has the thread wait for its next call (CountCall).
 inline void BeginTaking(GuestThread& t, int fd, bool socket) {
   if (socket && g_header->is_unprivileged != 0 && !ReadingMakesRoom(fd)) return;
   BeginChange(t);
@@ -38,12 +38,12 @@ struct Reads {
   bool is_receive = false;  // recv and its kin
 };
 
-// The kernel has no form of the call that cannot wait. No result of a call.
+// The kernel has no form of the call that cannot wait. The value is no result of a call.
 inline constexpr long kNoForm = -4096;
 
-// Of a call that reads a descriptor. `look`: what the kernel answers without waiting although
-// nothing is there, or -EAGAIN. `try_it`: what it answers in a form that cannot wait: -EAGAIN, or
-// kNoForm. `call`: as the program has made it.
+// The forms of a call that reads a descriptor. `look`: the answer that the kernel gives without
+// waiting although nothing is there, or -EAGAIN. `try_it`: the kernel's answer in a form that
+// cannot wait: -EAGAIN, or kNoForm. `call`: the call as the program has made it.
 template <class Look, class Try, class Call>
 struct Forms {
   Look look;
@@ -53,7 +53,7 @@ struct Forms {
 template <class Look, class Try, class Call>
 Forms(Look, Try, Call) -> Forms<Look, Try, Call>;
 
-// -1: of none.
+// -1: the descriptor is no socket.
 inline int TypeOfSocket(int fd) {
   int type = 0;
   socklen_t size = sizeof type;
@@ -61,9 +61,9 @@ inline int TypeOfSocket(int fd) {
   return result == 0 ? type : -1;
 }
 
-// Of a datagram socket: what is there is taken at once, for nothing that still comes is before it;
-// and where nothing is there, and the call does not wait, that is so once nothing can come any
-// more. False where the call has to wait.
+// Reads a datagram socket. A datagram that is there is taken at once, because nothing that still
+// comes is before it. Where nothing is there, and the call does not wait, that is so once nothing
+// can come any more. False where the call has to wait.
 template <class Look>
 bool ReadDatagram(GuestThread& t, int fd, Reads reads, Look look, ssize_t* result) {
   const std::int64_t now = NowNs(t);
@@ -104,7 +104,7 @@ class Taker {
   bool HasForm() const { return has_form_; }
   void UseNoForm() { has_form_ = false; }
 
-  // By the call itself, which may wait.
+  // Takes by the call itself, which may wait.
   long Make(int fd) { return Take(fd, forms_.call); }
   // -EAGAIN: nothing is there.
   long TryIt(int fd) {
@@ -136,7 +136,7 @@ class Taker {
   const Forms<Look, Try, Call>& forms_;
 };
 
-// Nothing is there.
+// Waits and reads, where nothing is there.
 template <class Take>
 ssize_t WaitAndRead(GuestThread& t, int fd, Take& take) {
   std::int64_t deadline = take.IsSocket() ? SocketDeadline(t, fd, SO_RCVTIMEO) : shm::kNeverNs;
@@ -158,7 +158,7 @@ ssize_t WaitAndRead(GuestThread& t, int fd, Take& take) {
   }
 }
 
-// What comes from outside of the run is there when it is to be seen.
+// Data that comes from outside of the run is there when it is to be seen.
 template <class Take>
 ssize_t ReadFromOutside(GuestThread& t, int fd, Reads reads, OutsidePlace* place, Take& take) {
   ssize_t got = 0;
@@ -205,7 +205,7 @@ ssize_t ReadLike(int fd, Reads reads, Forms<Look, Try, Call> forms) {
     has_looked = take.HasForm();
   } else if (PollNow(fd, POLLIN)) {
     if (!HoldForReadFrom(*t, fd, reads.socket)) return PassOnAfter(*t, take.Make(fd));
-    // While it held, somebody else may have taken what was there.
+    // While the thread held, another thread may have taken what was there.
     if (wants_more()) take.UseNoForm();
     if (const long result = take.TryIt(fd); result != -EAGAIN) return PassOnAfter(*t, result);
   } else if (wants_more()) {

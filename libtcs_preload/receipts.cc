@@ -11,12 +11,12 @@ namespace {
 
 void Add(GuestThread& thread, const shm::Receipts::Entry& entry) {
   shm::Receipts& receipts = thread.slot->receipts;
-  // A handler that comes between overwrites one, which is then not counted.
+  // A handler that comes between overwrites an entry, which is then not counted.
   const std::uint32_t count = receipts.count.load(std::memory_order_relaxed);
   if (count >= shm::Receipts::kMost) return;
   receipts.entries[count] = entry;
   receipts.count.store(count + 1, std::memory_order_release);
-  // Full: any stop empties it.
+  // The list is full: any stop empties it.
   if (count + 1 == shm::Receipts::kMost && thread.depth == 0) {
     Exchange(thread, Request{.kind = shm::NotificationKind::kPassOn});
   }

@@ -189,7 +189,7 @@ TCS_EXPORT int pthread_getaffinity_np(pthread_t thread, std::size_t size, cpu_se
   return tid < 0 ? ESRCH : GetAffinity(*t, tid, size, set);
 }
 
-// The kernel keeps nice values. They change no turn: threads of ordinary priority are equals.
+// Nice values, which the kernel keeps, change no turn: threads of ordinary priority are equals.
 TCS_EXPORT int setpriority(__priority_which_t which, id_t who, int value) noexcept {
   Enter();
   return static_cast<int>(ToErrno(RawSyscall(SYS_setpriority, which, who, value)));

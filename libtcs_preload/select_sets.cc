@@ -146,7 +146,8 @@ long SelectSets::ProbeAgain() {
   return found;
 }
 
-// To read, and what is exceptional; of a connection that is being made to write, too.
+// Hides what is to be read, and what is exceptional; of a connection that is being made the room to
+// write, too.
 long SelectSets::WithoutHidden(GuestThread& thread, long found) {
   if (found <= 0 || !IsAnythingOutside()) return found;
   for (std::size_t fd = 0; fd < count_; ++fd) {

@@ -15,23 +15,23 @@ namespace tcs::preload {
 class SelectSets {
  public:
   // Copies the sets' first `count` descriptors, or as many as the process can have. error() is then
-  // 0, or what select says of it.
+  // 0, or the error of select.
   SelectSets(int count, fd_set* read, fd_set* write, fd_set* except);
   SelectSets(const SelectSets&) = delete;
   SelectSets& operator=(const SelectSets&) = delete;
   int error() const { return error_; }
 
-  // What select finds at once, as the kernel returns it.
+  // The result that select finds at once, as the kernel returns it.
   long Probe();
 
-  // The same once the call has waited: what has been closed meanwhile is no error, but ready, and
-  // the call is over.
+  // As Probe, once the call has waited: a descriptor that has been closed meanwhile is no error,
+  // but ready, and the call is over.
   long ProbeAgain();
 
-  // What such a probe has found, less what is hidden (outside.h).
+  // The result of such a probe, less what is hidden (outside.h).
   long WithoutHidden(GuestThread& thread, long found);
 
-  // The descriptors of all three, as poll takes them. Valid while this object lives.
+  // The descriptors of all three sets, as poll takes them. Valid while this object lives.
   const pollfd* Wanted(unsigned long* count);
 
   // Shows the program what the last probe found; an error, or 0.

@@ -1,10 +1,10 @@
 // Threads that find another's thread-local storage as theirs.
 //
 // A thread that is made by the system call without CLONE_SETTLS has its maker's storage, and with
-// it the maker's GuestThread: both would speak through one slot. Such a thread may not call most of
-// the C library, natively, either; but it may make system calls by it. The coordinator sees it
-// made, and says so in the maker's clock page before the thread runs. From then on whoever finds
-// that page is told apart by its number.
+// it the maker's GuestThread: both threads would speak through one slot. Such a thread may not call
+// most of the C library, natively, either; but it may make system calls by that library. The
+// coordinator sees the thread made, and says so in the maker's clock page before the thread runs.
+// From then on a thread that finds that page is told apart by its number.
 #include <errno.h>
 
 #include <atomic>
@@ -16,12 +16,12 @@ namespace tcs::preload {
 
 namespace {
 
-constexpr int kMostSharers = 64;  // that live at a time; the others' calls are let through
+constexpr int kMostSharers = 64;  // threads that live at a time; others' calls are let through
 
 constexpr std::int32_t kNobody = 0;
 
 struct Sharer {
-  std::atomic<std::int32_t> tid;  // whose `state` is; negative: who is about to have it; kNobody
+  std::atomic<std::int32_t> tid;  // whose `state` it is; negative: who is about to have it; kNobody
   GuestThread state;
 };
 

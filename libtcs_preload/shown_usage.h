@@ -9,8 +9,8 @@
 
 namespace tcs::preload {
 
-// Puts what was charged in the place of what the host has measured. The kernel's split into user
-// and system time is kept as a proportion; under set costs, which repeat, all is user time.
+// Puts the charge in the place of what the host has measured. The kernel's split into user and
+// system time is kept as a proportion; under set costs, which repeat, all is user time.
 inline void ChargeInsteadOfMeasure(rusage* usage, std::int64_t charged_ns) {
   const std::int64_t user = ToNs(usage->ru_utime), system = ToNs(usage->ru_stime);
   const bool is_fixed = g_header->accounting == shm::Accounting::kFixed;

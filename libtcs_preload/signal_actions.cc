@@ -22,8 +22,8 @@ using Handler = void (*)(int, siginfo_t*, void*);
 constexpr int kSignals = 65;
 constexpr int kOurFlags = SA_SIGINFO | SA_RESTART;  // of every handler, in the kernel
 
-// A handler, and those of kOurFlags that the program has given it: one value, so that it can
-// change while signals come.
+// A handler, and those of kOurFlags that the program has given it. Both are in one value, so that
+// it can change while signals come.
 class Wanted {
  public:
   Wanted() = default;
@@ -56,7 +56,7 @@ bool HasWaited() {
   return t->slot->waits_in_call.exchange(0) != 0;
 }
 
-// What the kernel runs for every handler of the program's.
+// The function that the kernel runs for every handler of the program's.
 void OnSignal(int signal, siginfo_t* info, void* context) {
   const Wanted wanted = g_wanted[signal].load();
   GuestThread& thread = OwnState();

@@ -7,9 +7,9 @@
 // send SIGINT.
 //
 // So in the kernel every handler of the program's has SA_RESTART, and all calls are made again. A
-// handler of ours comes first, sees in the interrupted context which call that is, and has it fail
-// after all where it would natively: it waits, and the program wants no restart. The program is
-// shown the actions as it has set them.
+// handler of ours comes first, sees in the interrupted context which call that is, and has the call
+// fail after all where it would natively: the call waits, and the program wants no restart. The
+// program is shown the actions as it has set them.
 //
 // Handlers that a program sets by raw calls stay as they are. Async-signal-safe; no allocation.
 #pragma once

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kDeepestSet = 4;  // of epoll sets in each other
 
-bool g_any = false;  // this program has made one
+bool g_any = false;  // this program has made such a descriptor
 
 unsigned long SignalsIn(int fd, bool* is_epoll, int depth) {
   unsigned long signals = 0;

@@ -1,6 +1,6 @@
-// Descriptors of signalfd. They are ready when the process that looks has a signal. So the
-// coordinator, which watches all other descriptors, does not see whether they are ready, and waits
-// for their signals instead.
+// Descriptors of signalfd. Such a descriptor is ready when the process that looks has a signal. So
+// the coordinator, which watches all other descriptors, does not see whether they are ready, and
+// waits for their signals instead.
 #pragma once
 
 namespace tcs::preload {

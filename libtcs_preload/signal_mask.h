@@ -13,8 +13,8 @@ namespace tcs::preload {
 
 // For its lifetime all signals are blocked, so that no handler runs where the call would not let
 // it; a signal that the mask lets in ends the wait by being pending (WaitForFds), and its handler
-// runs under the mask in one step with the end of the wait (Deliver). Without a mask it does
-// nothing.
+// runs under the mask in one step with the end of the wait (Deliver). Without a mask the object
+// does nothing.
 class MaskedWait {
  public:
   explicit MaskedWait(const sigset_t* mask) : active_(mask != nullptr) {
@@ -43,7 +43,8 @@ class MaskedWait {
     return (pending & Awaited()) != 0;
   }
 
-  // Runs the handlers of what is pending. True if there was one; what is ignored is thrown away.
+  // Runs the handlers of pending signals. True if there was one; signals that are ignored are
+  // thrown away.
   bool Deliver() const {
     if (!active_) return false;
     const timespec now{};

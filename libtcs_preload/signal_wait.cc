@@ -80,7 +80,7 @@ int TimedWait(const sigset_t* set, siginfo_t* info, const timespec* timeout) {
     signal = Accept(*t, wanted & ~kNeverAccepted & ~OwnSignals(), &found,
                     timeout == nullptr ? -1 : ToNs(limit));
     if (signal > 0 && found.si_code == SI_TIMER) {
-      // It was sent before these happened.
+      // The signal was sent before these overruns happened.
       found.si_overrun =
           static_cast<int>(Exchange(*t, Request{.kind = NotificationKind::kTimerOverrun,
                                                 .args = {found.si_timerid, 1}})

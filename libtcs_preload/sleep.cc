@@ -28,8 +28,8 @@ int SleepFor(GuestThread& t, std::int64_t duration_ns, std::int64_t* remaining_n
   return EINTR;
 }
 
-// 0, or why nobody can sleep on that clock. Of those that are made while a program runs only the
-// kernel knows which there are.
+// 0, or why nobody can sleep on that clock. Of the clocks that are made while a program runs only
+// the kernel knows which there are.
 int ErrorOfClock(const GuestThread& t, clockid_t id) {
   if (id == CLOCK_THREAD_CPUTIME_ID) return EINVAL;  // the C library's own word
   if (id >= 0) return tcs::shm::ErrorOfSleepOn(id, t.slot->tid);
@@ -94,7 +94,8 @@ TCS_EXPORT unsigned sleep(unsigned seconds) {
     errno = saved;
     return 0;
   }
-  // Rounded as the C library does: what is left, in whole seconds, at least the half counts up.
+  // Rounded as the C library does: the rest in whole seconds, where at least half a second counts
+  // up.
   return static_cast<unsigned>(rest.tv_sec + (rest.tv_nsec >= 500'000'000 ? 1 : 0));
 }
 

@@ -43,7 +43,7 @@ void Replace(GuestThread& t, const cmsghdr& header, unsigned char* data) {
       break;
     case kStamping:
     case kNewStamping:
-      // The kernel's own and two of the hardware's; 0 where there is none.
+      // A time of the kernel's own and two of the hardware's; 0 where there is none.
       for (std::size_t at = 0; at + sizeof(timespec) <= size; at += sizeof(timespec)) {
         timespec stamp;
         memcpy(&stamp, data + at, sizeof stamp);
@@ -73,8 +73,8 @@ void ReplaceTimestamps(msghdr* message) {
 
 }  // namespace tcs::preload
 
-// SIOCGSTAMP is of what was received last; devices compute by themselves, and their calls wait for
-// that.
+// SIOCGSTAMP is of the data that was received last. Devices compute by themselves, and their calls
+// wait for that.
 TCS_EXPORT int ioctl(int fd, unsigned long request, ...) noexcept {
   va_list arguments;
   va_start(arguments, request);

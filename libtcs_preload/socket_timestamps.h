@@ -6,7 +6,7 @@
 
 namespace tcs::preload {
 
-// In what has just been received.
+// Replaces the times in a message that has just been received.
 void ReplaceTimestamps(msghdr* message);
 
 }  // namespace tcs::preload

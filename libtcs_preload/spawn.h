@@ -1,5 +1,6 @@
-// Telling the coordinator of new threads and children: they will attach, at their first turns. What
-// the kernel makes for a thread that says nothing of it has its place, and turns, without that.
+// Telling the coordinator of new threads and children: new threads and children will attach, at
+// their first turns. A thread or process that the kernel makes for a thread that says nothing of it
+// has its place, and turns, without that.
 #pragma once
 
 #include <sys/types.h>
@@ -8,12 +9,12 @@
 
 namespace tcs::preload {
 
-// The thread makes one, of which it tells next. Between these two nothing else that it says counts
-// as such; null: it does not.
+// The thread makes a thread or a child, of which it tells next. Between these two calls nothing
+// else that it says counts as such; null: does nothing.
 void BeginAnnouncement(GuestThread* thread);
 void EndAnnouncement(GuestThread* thread);
 
-// The same for the end of a scope, which no child by fork comes to.
+// As both calls, the second at the end of a scope, which no child by fork comes to.
 class Announcement {
  public:
   explicit Announcement(GuestThread* thread) : thread_(thread) { BeginAnnouncement(thread_); }

@@ -1,6 +1,6 @@
-// The string functions that the shim calls, as its own, hidden ones. Those that its process finds
-// first may be wrapped: by a sanitizer's runtime in the program, which cannot be called before it
-// has set itself up, and the shim comes before all others.
+// The string functions that the shim calls, as its own, hidden ones. The functions that its process
+// finds first may be wrapped: by a sanitizer's runtime in the program, which cannot be called
+// before it has set itself up, and the shim comes before all others.
 //
 // Async-signal-safe, and they allocate nothing.
 #include <cstddef>
@@ -20,7 +20,7 @@ TCS_HIDDEN const char* Within(const char* text, const char* part) __asm__("strst
 TCS_HIDDEN std::size_t SpanOf(const char* text, const char* set) __asm__("strspn");
 TCS_HIDDEN std::size_t SpanOfOthers(const char* text, const char* set) __asm__("strcspn");
 
-// The compiler is not to find that these are what they are, and call them.
+// The compiler is not to find that these functions are what they are, and call them.
 #pragma GCC optimize("no-tree-loop-distribute-patterns")
 
 std::size_t LengthUpTo(const char* text, std::size_t most) {
@@ -63,7 +63,7 @@ const char* LastOf(const char* text, int character) {
 
 std::size_t SpanOfOthers(const char* text, const char* set) {
   std::size_t n = 0;
-  while (FirstOf(set, text[n]) == nullptr) ++n;  // whose end is the last in each set
+  while (FirstOf(set, text[n]) == nullptr) ++n;  // the end of the text is the last in each set
   return n;
 }
 

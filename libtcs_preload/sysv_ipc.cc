@@ -1,8 +1,9 @@
-// System V semaphores and message queues. The kernel is asked for what it can do at once; where
-// that is nothing it holds the thread, counts it among those who wait, keeps their order, and gives
-// a thread what it waits for in the very call of another that makes it possible. Only waits with a
-// deadline are not the kernel's, whose time is the host's: there the thread waits until somebody
-// has changed the object. Whoever does tells the coordinator, if anybody waits.
+// System V semaphores and message queues. The kernel is asked for what it can do at once; where it
+// can do nothing at once the kernel holds the thread, counts it among the waiting threads, keeps
+// their order, and gives a thread what it waits for in the very call of another thread that makes
+// it possible. Only waits with a deadline are not the kernel's, whose time is the host's: there the
+// thread waits until another thread has changed the object. A thread that changes an object tells
+// the coordinator, if anybody waits.
 #include <errno.h>
 #include <stdarg.h>
 #include <string.h>
@@ -33,15 +34,15 @@ namespace {
 constexpr int kWouldWait = 4096;              // no errno
 constexpr std::size_t kMostOperations = 500;  // the kernel's SEMOPM; above it says E2BIG
 
-// The object may be what those wait for whom the kernel holds, and those who wait here.
+// Threads that the kernel holds may wait for the object, and threads that wait here.
 void TellOfChange(GuestThread& t, KernelObjectKind kind, int id) {
   TellKernelWaiters(t);
   TellChanged(t, kind, id);
 }
 
 // Makes `at_once`, which returns -`blocks` where it would have to wait, and then `waiting`, the
-// same call in the form that waits. What it reads and changes has a place in time, so nothing from
-// before may be missing.
+// same call in the form that waits. The reads and changes of the call have a place in time, so
+// nothing from before may be missing.
 template <class AtOnce, class Waiting>
 long CallInKernel(GuestThread& t, KernelObjectKind kind, int id, int blocks, bool cancellable,
                   AtOnce at_once, Waiting waiting) {
@@ -69,7 +70,7 @@ long CallUntil(GuestThread& t, KernelObjectKind kind, int id, int blocks, std::i
                             .deadline_ns = deadline_ns,
                             .args = {static_cast<std::int64_t>(kind), id, again ? 1 : 0},
                             .interruptible = true});
-    // These calls are not made again after a handler, whatever it was installed with.
+    // The calls here are not made again after a handler, whatever the handler was installed with.
     if (reply.reason == WakeReason::kSignal) return -EINTR;
     if (reply.reason == WakeReason::kDeadline) {
       const long last = call();

@@ -1,5 +1,5 @@
-// System V shared memory, and the making of System V objects: all the kernel's, but for the times
-// that it keeps of them.
+// System V shared memory, and the making of System V objects: all calls are the kernel's, but for
+// the times that it keeps of the objects.
 #include <sys/ipc.h>
 #include <sys/msg.h>
 #include <sys/sem.h>
@@ -18,8 +18,8 @@ using tcs::shm::IpcKind;
 
 namespace {
 
-// Which object is attached where; shmdt does not say. Beyond so many a time of detaching is not
-// noted.
+// Which object is attached where; shmdt does not say. Beyond so many attachments a time of
+// detaching is not noted.
 struct Attachment {
   std::atomic<const void*> at;
   std::atomic<int> id;
@@ -35,7 +35,7 @@ void Remember(const void* at, int id) {
   }
 }
 
-// Its number, or -1.
+// The object's number, or -1.
 int Forget(const void* at) {
   for (Attachment& attachment : g_attachments) {
     if (attachment.at.load() != at) continue;

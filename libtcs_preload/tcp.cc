@@ -1,11 +1,11 @@
 // TCP between programs, without the timers by which the kernel gathers bytes and acknowledgements:
-// they run in the host's time, and a byte written at v is to be there at v.
+// these timers run in the host's time, and a byte written at v is to be there at v.
 //
-//   * A socket sends small segments at once (TCP_NODELAY), and is never corked. What the program
-//     has asked for stays what it is told.
-//   * Who reads acknowledges at once (tcp.h), so that a sender is not kept waiting.
-//   * A listener's queue is as long as the host allows: where it is full the kernel drops what a
-//     connection begins with, and the other end tries again a second later.
+//   * A socket sends small segments at once (TCP_NODELAY), and is never corked. The program is
+//     still told what it has asked for.
+//   * A reader acknowledges at once (tcp.h), so that a sender is not kept waiting.
+//   * A listener's queue is as long as the host allows: where the queue is full the kernel drops
+//     the beginning of a connection, and the other end tries again a second later.
 #include "libtcs_preload/tcp.h"
 
 #include <errno.h>
@@ -24,8 +24,8 @@ using namespace tcs::preload;
 namespace {
 
 // Where the program's wishes are kept: in flags of the socket itself that mean nothing to a stream.
-// So they go wherever it goes: to children, to other programs, and from a listener to what it
-// accepts.
+// So the wishes go wherever the socket goes: to children, to other programs, and from a listener to
+// the connections that it accepts.
 constexpr int kAskedForNoDelay = SO_RXQ_OVFL, kAskedForCork = SO_NOFCS;
 
 constexpr int kLongestQueue = 4096;
@@ -65,7 +65,7 @@ bool IsTcp(int fd) {
 
 }  // namespace tcs::preload
 
-// None of these is charged: they prepare what programs do.
+// None of these calls is charged: they prepare what programs do.
 
 TCS_EXPORT int socket(int domain, int type, int protocol) noexcept {
   const long fd = RawSyscall(SYS_socket, domain, type, protocol);
@@ -84,7 +84,7 @@ TCS_EXPORT int listen(int fd, int backlog) noexcept {
   return static_cast<int>(ToErrno(RawSyscall(SYS_listen, fd, backlog)));
 }
 
-// The kernel judges the call; then it is made to forget it.
+// The kernel judges the call; then it is made to forget the option.
 TCS_EXPORT int setsockopt(int fd, int level, int option, const void* value,
                           socklen_t size) noexcept {
   const long result = RawSyscall(SYS_setsockopt, fd, level, option, Arg(value), size);

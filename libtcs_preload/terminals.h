@@ -7,7 +7,7 @@ namespace tcs::preload {
 
 bool IsTerminal(int fd);
 
-// How long a read of it waits that finds nothing: 0: not at all; kNeverNs: until something comes,
+// How long a read of `fd` that finds nothing waits: 0: not at all; kNeverNs: until something comes,
 // as for everything that is no terminal.
 std::int64_t ReadTimeoutOf(int fd);
 

@@ -1,5 +1,5 @@
-// New threads get slots of their own. Their waiting for each other ends in futex calls, which the
-// kernel hands to the coordinator.
+// New threads get slots of their own. The waits of threads for each other end in futex calls, which
+// the kernel hands to the coordinator.
 #include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -29,8 +29,8 @@ void* RunThread(void* raw) {
   return start.routine(start.argument);
 }
 
-// What the attributes ask of the scheduler is meant for the robot's. The host's must not hear of
-// it: it is taken out of them while the thread is made.
+// The requests of the attributes to the scheduler are meant for the robot's. The host's must not
+// hear of them: the requests are taken out of the attributes while the thread is made.
 class SchedulingAsked {
  public:
   explicit SchedulingAsked(pthread_attr_t* attributes) : attributes_(attributes) {
@@ -45,7 +45,7 @@ class SchedulingAsked {
     pthread_attr_setinheritsched(attributes_, PTHREAD_INHERIT_SCHED);
     cpu_set_t every;
     memset(&every, 0xff, sizeof every);
-    // Without a set of its own it says that all are allowed.
+    // Attributes without a set of their own say that all cores are allowed.
     if (pthread_attr_getaffinity_np(attributes_, sizeof cores_, &cores_) == 0 &&
         memcmp(&cores_, &every, sizeof every) != 0) {
       has_cores_ = true;
@@ -108,7 +108,7 @@ TCS_EXPORT int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
     free(start);
     return error;
   }
-  // From now on the coordinator knows of it, and does not let time pass it by.
+  // From now on the coordinator knows of the new thread, and does not let time pass it by.
   Exchange(*t, asked.AnnouncementOf(*thread));
   return 0;
 }

@@ -39,7 +39,7 @@ std::int64_t ReadClock(GuestThread& t, const ClockOfId& clock) {
   }
 }
 
-// The date from now on; 0, or -1 with errno.
+// Sets the date from now on; returns 0, or -1 with errno.
 int SetDate(GuestThread& t, std::int64_t date_ns) {
   HoldForWrite(t);
   const Reply reply =
@@ -74,7 +74,8 @@ long ClockGettime(clockid_t id, timespec* ts) {
       return 0;
     }
   }
-  // Another's processor time the coordinator knows, which this call reaches without the mark.
+  // The coordinator knows the processor time of others. Without the mark this call reaches the
+  // coordinator.
   if (t != nullptr && tcs::shm::ClockOf(id).IsOfCpu()) {
     return RawSyscall(SYS_clock_gettime, id, Arg(ts), 0, 0, 0, 0);
   }
@@ -99,7 +100,7 @@ time_t Time(time_t* out) {
 long ClockGetres(clockid_t id, timespec* resolution) {
   const ClockOfId clock = tcs::shm::ClockOf(id);
   if (id < 0 && clock.IsOfCpu()) {
-    // Whether there is such a process or thread the kernel knows.
+    // The kernel knows whether there is such a process or thread.
     if (const long error = RawSyscall(SYS_clock_getres, id, 0); error != 0) return error;
   }
   if (Enter(Concern::kNobody) != nullptr && clock.kind != ClockKind::kNone) {
@@ -200,7 +201,7 @@ TCS_EXPORT int settimeofday(const timeval* tv, const struct timezone* zone) {
   return zone == nullptr && IsValid(date) ? SetDate(*t, ToNs(date)) : Fail(EINVAL);
 }
 
-// The headers have forgotten it, older programs have not.
+// The headers have forgotten stime, older programs have not.
 TCS_EXPORT int SetTime(const time_t*) __asm__("stime");
 TCS_EXPORT int SetTime(const time_t* seconds) {
   const timespec ts{*seconds, 0};
@@ -250,7 +251,7 @@ TCS_EXPORT int OldNtpGetTime(ntptimeval* out) {
 TCS_EXPORT int clock_adjtime(clockid_t id, timex* tx) {
   if (id == CLOCK_REALTIME) return adjtimex(tx);
   if (!CanRead(tx, sizeof *tx)) return Fail(EFAULT);
-  // No other can be adjusted, the kernel says.
+  // No other clock can be adjusted, the kernel says.
   Enter();
   return static_cast<int>(ToErrno(RawSyscall(SYS_clock_adjtime, id, Arg(tx))));
 }

@@ -120,7 +120,7 @@ TCS_EXPORT int timerfd_create(int clock, int flags) {
 TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* given, itimerspec* old) {
   const Entered t;
   const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
-  if (timer == nullptr) {  // one that was made raw, or by another program, the coordinator knows
+  if (timer == nullptr) {  // the coordinator knows a timer that was made raw, or by another program
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_timerfd_settime, fd, flags, Arg(given), Arg(old), 0, kTrapped)));
   }

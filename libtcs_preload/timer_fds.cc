@@ -13,7 +13,7 @@ TimerFd g_timers[kRoom];
 int g_used =
     0;  // entries ever used; most programs have none, and then every look-up is one comparison
 
-// Those of its parent a child by fork does not know by their ids: the coordinator finds them.
+// A child by fork does not know its parent's timers by their ids: the coordinator finds them.
 TimerFd* Find(int fd) {
   if (fd < 0 || g_used == 0) return nullptr;
   if (!g_process->has_timer_fds) g_used = 0;
@@ -26,7 +26,7 @@ TimerFd* Find(int fd) {
 }  // namespace
 
 bool RememberTimerFd(int fd, std::int64_t id, Clock clock) {
-  // An entry of this number is stale: its descriptor was closed behind our back.
+  // An entry of this number is stale: the entry's descriptor was closed behind our back.
   TimerFd* entry = Find(fd);
   for (int i = 0; entry == nullptr && i < g_used; ++i) {
     if (g_timers[i].fd < 0) entry = &g_timers[i];
@@ -45,7 +45,7 @@ TimerFd* FindTimerFd(int fd) { return Find(fd); }
 bool IsTimerFd(int fd) {
   TimerFd* timer = Find(fd);
   if (timer == nullptr) return false;
-  // What has no file has no type of file.
+  // A descriptor without a file has no type of file.
   struct stat status;
   if (RawSyscall(SYS_fstat, fd, Arg(&status)) == 0 && (status.st_mode & S_IFMT) == 0) return true;
   timer->fd = -1;

@@ -1,5 +1,5 @@
-// Debuggers and tracers inside a run: they would wait for stops of their program that nobody tells
-// them of, for ever. They are refused, with a sentence that says what works instead.
+// Debuggers and tracers inside a run would wait for ever for stops of their program that nobody
+// tells them of. Tracing is refused, with a sentence that says what works instead.
 #include <errno.h>
 #include <stdarg.h>
 #include <string.h>
@@ -15,7 +15,7 @@ using namespace tcs::preload;
 
 namespace {
 
-// Of this process, and of those that it forks.
+// For this process, and for the processes that it forks.
 std::atomic<bool> g_has_said{false};
 
 void SayOnce() {

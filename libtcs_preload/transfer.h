@@ -14,8 +14,8 @@
 
 namespace tcs::preload {
 
-// What is left of some buffers. It reads their list only when asked for bytes(), or when some bytes
-// have been used: then the kernel has read the list, too, so the memory is there.
+// The rest of some buffers. The object reads their list only when asked for bytes(), or when some
+// bytes have been used: then the kernel has read the list, too, so the memory is there.
 class Rest {
  public:
   Rest(const iovec* iov, std::size_t count) : iov_(iov), count_(count) {}
@@ -26,7 +26,7 @@ class Rest {
     return bytes_;
   }
 
-  // All of it, or where something has been used already as much as fits into the copy.
+  // The whole rest, or, where something has been used already, as much as fits into the copy.
   const iovec* Next(std::size_t* count) {
     if (offset_ == 0) {
       *count = count_;
@@ -82,7 +82,7 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
     const bool is_hidden = (events & POLLIN) != 0 && IsHidden(thread, OutsideOf(file.fd()));
     if ((!can_part || done == 0) && !is_hidden && PollNow(file.fd(), events)) {
       if (!can_part) return whole(file.fd());
-      // It waits for what cannot be polled: room in the queue of the socket that it sends to.
+      // The call waits for what cannot be polled: room in the queue of the socket that it sends to.
       return WaitInKernel(thread, true, [&] { return whole(file.fd()); });
     }
     if (is_last) return done > 0 ? done : -EAGAIN;

@@ -1,9 +1,9 @@
-// The program's memory, as a system call takes it: what cannot be read or written is an error of
-// the call (EFAULT) and not the end of the program.
+// The program's memory, as a system call takes it: memory that cannot be read or written is an
+// error of the call (EFAULT) and not the end of the program.
 //
-// Whether memory is there only the kernel knows, and asking it takes a system call for each page.
-// What lies in the page of the caller's stack frame needs no question, and that is where a program
-// mostly has what it hands over. Async-signal-safe; errno stays as it is.
+// Only the kernel knows whether memory is there, and asking it takes a system call for each page.
+// Memory in the page of the caller's stack frame needs no question, and a program mostly has there
+// what it hands over. Async-signal-safe; errno stays as it is.
 #pragma once
 
 #include <string.h>
@@ -18,7 +18,7 @@ inline constexpr std::uintptr_t kPageSize = 4096;
 bool CanReadFar(const void* from, std::size_t size);
 bool CanOverwriteFar(void* to, std::size_t size);
 
-// True for what is in the page of the stack that this is called on.
+// True for memory in the page of the stack that this function is called on.
 inline bool IsNear(const void* start, std::size_t size) {
   const auto here = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
   const std::uintptr_t offset =
@@ -30,12 +30,13 @@ inline bool CanRead(const void* from, std::size_t size) {
   return __builtin_expect(IsNear(from, size), 1) || CanReadFar(from, size);
 }
 
-// May change what is there: for what is about to be written as a whole. At least 4 bytes, or none.
+// May change the memory: for memory that is about to be written as a whole. At least 4 bytes, or
+// none.
 inline bool CanOverwrite(void* to, std::size_t size) {
   return __builtin_expect(IsNear(to, size), 1) || CanOverwriteFar(to, size);
 }
 
-// A list of strings that ends with a null pointer, as execve takes it; null is one, too.
+// A list of strings that ends with a null pointer, as execve takes it; null is such a list, too.
 bool CanReadStrings(const char* const* list);
 
 // False: EFAULT.

@@ -17,7 +17,8 @@ namespace tcs::preload {
 
 namespace {
 
-// What the kernel says of a generator's state to who asks with this size. Ours needs none.
+// The kernel's answer about a generator's state to a caller that asks with this size. Our generator
+// needs none.
 constexpr std::size_t kAskForState = ~std::size_t{0};
 struct RandomState {
   std::uint32_t size, mmap_prot, mmap_flags, reserved[13];
@@ -50,7 +51,7 @@ struct __attribute__((packed)) Jump {
 
 struct Image {
   const char* base = nullptr;
-  std::uint64_t offset = 0;  // what an address in it is to be added to
+  std::uint64_t offset = 0;  // to be added to an address in the image
   std::uint64_t size = 0;
   const Elf64_Sym* symbols = nullptr;
   const char* names = nullptr;
@@ -140,7 +141,7 @@ void PatchVdso() {
       {"__vdso_getcpu", reinterpret_cast<const void*>(VdsoGetcpu)},
   };
   for (const Replacement& replacement : replacements) Replace(image, replacement);
-  // Where draws need not repeat the kernel's own is left alone: it is faster.
+  // Where draws need not repeat, the kernel's own function is left alone: that one is faster.
   if (DrawsRepeat()) {
     Replace(image, {"__vdso_getrandom", reinterpret_cast<const void*>(VdsoGetrandom)});
   }

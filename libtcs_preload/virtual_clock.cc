@@ -22,7 +22,7 @@ ClockReading ReadChecked(ClockPage& page) {
   }
 }
 
-// One sleep inside the horizon is one addition. False where it has to be asked for.
+// A sleep inside the horizon is one addition. False where the sleep has to be asked for.
 inline bool MoveOwnClock(ClockPage& page, ClockReading r, std::int64_t deadline_ns) {
   for (;; r = ReadChecked(page)) {
     const std::int64_t now = shm::ShownTime(page, r);
@@ -44,7 +44,7 @@ Now ReadNowSlowly(GuestThread& thread) {
   ClockPage& page = thread.slot->clock;
   for (;;) {
     const ClockReading r = ReadChecked(page);
-    // A handler that has interrupted an exchange would end its wait by another one.
+    // A handler that has interrupted an exchange would end its wait by another exchange.
     const bool may_ask = thread.depth == 0 || (g_header->is_unprivileged != 0 && !IsAtGate(thread));
     const Now now = Show(page, r);
     if (now.shown_ns < r.horizon_ns || !may_ask || IsShutDown()) return now;
@@ -54,7 +54,7 @@ Now ReadNowSlowly(GuestThread& thread) {
 
 std::int64_t ThreadCpuNs(GuestThread& thread) {
   NowNs(thread);  // a spin on the CPU clock, too, must reach its horizon
-  // What was stolen since the last look is taken out later; what has been shown stays.
+  // Time that was stolen since the last look is taken out later; time that has been shown stays.
   const std::int64_t now_ns = ReadChecked(thread.slot->clock).cpu_ns;
   if (now_ns > thread.cpu_shown_ns) thread.cpu_shown_ns = now_ns;
   return thread.cpu_shown_ns;
@@ -106,7 +106,7 @@ std::int64_t DeadlineAfter(GuestThread& thread, std::int64_t timeout_ns) {
 
 namespace {
 
-// The thread holds. False if a handler has run meanwhile, and its time is another one now.
+// The thread holds. False if a handler has run meanwhile, and the thread's time is another one now.
 bool Hold(GuestThread& thread, NotificationKind for_what) {
   const std::uint32_t handlers = thread.handlers;
   Exchange(thread, Request{.kind = for_what});
@@ -126,7 +126,7 @@ void HoldForRead(GuestThread& thread) {
     }
     if (now <= page.read_safe_ns || IsShutDown()) return;
   }
-  // What is read now is older than the read by this much.
+  // The data read now is older than the read by this much.
   const std::int64_t stale = now - page.read_safe_ns;
   if (stale > page.staleness_ns.load(std::memory_order_relaxed)) {
     page.staleness_ns.store(stale, std::memory_order_relaxed);

@@ -1,4 +1,4 @@
-// The calling thread's clock, and waiting on it. All of it is async-signal-safe.
+// The calling thread's clock, and waiting on it. Every function here is async-signal-safe.
 #pragma once
 
 #include <time.h>
@@ -41,7 +41,7 @@ inline Now ReadNow(GuestThread& thread) {
   return ReadNowSlowly(thread);
 }
 
-// Virtual time now, in ns since the run's start. Where the horizon is reached it stops the thread
+// Virtual time now, in ns since the run's start. Where the horizon is reached the thread is stopped
 // first.
 inline std::int64_t NowNs(GuestThread& thread) { return ReadNow(thread).shown_ns; }
 
@@ -58,7 +58,7 @@ inline std::int64_t OffsetNs(Clock clock) {
 // Sleeps until `deadline_ns`; false if a signal handler ended the sleep before. The second form
 // spares a reading where the caller has just made one.
 bool SleepUntil(GuestThread& thread, std::int64_t deadline_ns);
-// The same until CLOCK_REALTIME shows `date_ns`, also where it is set meanwhile.
+// As SleepUntil, until CLOCK_REALTIME shows `date_ns`, also where the date is set meanwhile.
 bool SleepUntilDate(GuestThread& thread, std::int64_t date_ns);
 bool SleepUntil(GuestThread& thread, const shm::ClockReading& now, std::int64_t deadline_ns);
 

@@ -11,16 +11,16 @@
 namespace tcs::preload {
 
 // While a thread gets its place, and has not had its first turn. A handler that ran there would
-// find no clock but the host's; or, where the thread has its place already, one that nobody has set
-// yet. All signals wait until the thread is dispatched; natively it would have begun only then,
-// too.
+// find no clock but the host's; or, where the thread has its place already, a clock that nobody has
+// set yet. All signals wait until the thread is dispatched; natively the thread would have begun
+// only then, too.
 class WithoutHandlers {
  public:
   WithoutHandlers() {
     const unsigned long all = ~0ul;
     RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before_), kSetSize);
   }
-  // What threads are told by tcs itself reaches every one that has attached meanwhile.
+  // The own signals of tcs reach every thread that has attached meanwhile.
   ~WithoutHandlers() {
     const unsigned long mask = before_ & ~OwnSignals();
     RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&mask), 0, kSetSize);
@@ -28,7 +28,7 @@ class WithoutHandlers {
   WithoutHandlers(const WithoutHandlers&) = delete;
   WithoutHandlers& operator=(const WithoutHandlers&) = delete;
 
-  // What the thread blocks itself.
+  // The signals that the thread blocks itself.
   unsigned long before() const { return before_; }
 
  private:

@@ -1,7 +1,7 @@
 // Writing descriptors that can make a program wait, and connecting them.
 //
-// Kernel-carried data is there at once for anybody who looks. So a write waits until nobody can
-// look at an earlier virtual time.
+// Kernel-carried data is there at once for any thread that looks. So a write waits until no thread
+// can look at an earlier virtual time.
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -33,11 +33,11 @@ using namespace tcs::preload;
 
 namespace {
 
-// A UNIX stream connects once its listener has room. That cannot be polled; those who accept say
-// that there is room again.
+// A UNIX stream connects once its listener has room. That room cannot be polled; threads that
+// accept say that there is room again.
 constexpr auto kBacklogs = tcs::shm::KernelObjectKind::kBacklogs;
 
-// TCP would keep what MSG_MORE announces more for until a timer of the host's runs out.
+// TCP would keep data for which MSG_MORE announces more until a timer of the host's runs out.
 int WithoutMore(int fd, int flags) {
   return (flags & MSG_MORE) != 0 && IsTcp(fd) ? flags & ~MSG_MORE : flags;
 }
@@ -48,7 +48,8 @@ long WritePart(int fd, const iovec* iov, std::size_t count) {
   return RawSyscall(SYS_pwritev2, fd, Arg(iov), static_cast<long>(count), -1, -1, RWF_NOWAIT);
 }
 
-// What the kernel would not find there, or not look at, is left for it to say.
+// False for buffers that the kernel would not find there, or not look at: the kernel is left to say
+// so.
 bool AreSound(const iovec* buffers, std::size_t count) {
   if (count > kMostBuffers || !CanRead(buffers, count * sizeof *buffers)) return false;
   for (std::size_t i = 0; i < count; ++i) {
@@ -78,8 +79,8 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   return ToErrno(result);
 }
 
-// What only the coordinator receives waits for nobody: it keeps it until its virtual time. Returns
-// where it receives that.
+// A message that only the coordinator receives waits for nobody: the coordinator keeps it until its
+// virtual time. Returns the coordinator's receiver of the message.
 int HoldToSend(GuestThread& t, int fd, const msghdr& message) {
   const bool may_go_on = BeginWrite(t);
   const bool reaches_safely = ReachesSafely(t, message);
@@ -109,9 +110,9 @@ ssize_t SendInParts(GuestThread* t, int fd, msghdr message, int flags, Whole who
       whole));
 }
 
-// `may_post`: false once the kernel has carried a message of this call. It is read before any that
-// is posted later in the call only where the coordinator wakes at once, which gates alone do not
-// see to.
+// `may_post`: false once the kernel has carried a message of this call. That message is read before
+// any that is posted later in the call only where the coordinator wakes at once, which gates alone
+// do not see to.
 template <class Whole>
 ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* may_post,
                 Whole whole) {
@@ -123,11 +124,11 @@ ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* 
   long posted = 0;
   ssize_t sent;
   if (*may_post && Post(*t, fd, receiver, message, flags, &posted)) {
-    t->in_call = was_in_call;  // nobody has seen it yet
+    t->in_call = was_in_call;  // nobody has seen the message yet
     sent = ToErrno(posted);
   } else {
     *may_post = false;
-    // The coordinator would take it for something that happens when it finds it.
+    // The coordinator would take the message for something that happens when it finds the message.
     if (receiver != tcs::shm::kNoReceiver && IsBeside(*t)) {
       Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kWrite});
     }
@@ -185,7 +186,7 @@ TCS_EXPORT ssize_t sendmsg(int fd, const msghdr* message, int flags) {
                  [&](int by) { return RawSyscall(SYS_sendmsg, by, Arg(message), flags); });
 }
 
-// What the socket has no room for is waited for, until all have been sent.
+// The call waits where the socket has no room, until all messages have been sent.
 TCS_EXPORT int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
   const Entered t;
   if (t != nullptr) flags = WithoutMore(fd, flags);
@@ -253,7 +254,8 @@ long ConnectFar(GuestThread& t, int fd, const sockaddr* address, socklen_t size)
     errno = saved;
     return -error;
   }
-  // By this the kernel, too, finds that it is connected, or not, and says what became of it.
+  // By this the kernel, too, finds that the socket is connected, or not, and says what became of
+  // it.
   return ConnectOnce(file.fd(), address, size);
 }
 

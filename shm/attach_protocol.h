@@ -21,7 +21,7 @@ enum class AttachWants : std::uint32_t {
   // the write end of the pipe for its notifications. Where processes have brokers a fourth: the
   // socket that its broker answers at.
   kAll = 1,
-  kDdsArea = 2,  // one descriptor (dds_exchange.h), of a process that has joined
+  kDdsArea = 2,  // the descriptor of its area (dds_exchange.h), for a process that has joined
 };
 
 struct AttachHello {
@@ -49,7 +49,8 @@ struct AttachReply {
 };
 static_assert(sizeof(AttachReply) == 128);
 
-// What a notification puts into the process's pipe: the index of the slot whose record is filled.
+// The message that a notification puts into the process's pipe: the index of the slot whose record
+// is filled.
 struct PipeMessage {
   std::uint32_t slot;
   // 1: the thread tells that a handler ends its wait (kInterrupted). Should its gate have been
@@ -60,9 +61,9 @@ static_assert(sizeof(PipeMessage) == 8);
 
 // Where the kernel lets the coordinator copy no descriptors of clients (RunHeader::has_brokers)
 // each process has a broker: a process beside it that shares its table of descriptors, and sends
-// the coordinator copies of the descriptors that it asks for. One answer for each request, over a
-// SOCK_SEQPACKET socket, with the copy beside it. The broker's first message is an answer with the
-// serial 0: the kernel says which process sent it, and that is the broker.
+// the coordinator copies of the descriptors that it asks for. The broker sends one answer for each
+// request, over a SOCK_SEQPACKET socket, with the copy beside it. The broker's first message is an
+// answer with the serial 0: the kernel says which process sent it, and that is the broker.
 struct BrokerRequest {
   std::int32_t number;
   std::uint32_t serial;  // never 0
@@ -70,7 +71,7 @@ struct BrokerRequest {
 static_assert(sizeof(BrokerRequest) == 8);
 
 struct BrokerAnswer {
-  std::int32_t error;  // an errno; 0: the copy has come with it
+  std::int32_t error;  // an errno; 0: the copy has come with the answer
   std::uint32_t serial;
 };
 static_assert(sizeof(BrokerAnswer) == 8);

@@ -1,5 +1,5 @@
-// What the kernel's clocks show in virtual time, and what they are good for. Nothing here
-// allocates; all is async-signal-safe.
+// The kernel's clocks in virtual time: what each clock shows, and what a program can use it for.
+// Nothing here allocates; every function is async-signal-safe.
 #pragma once
 
 #include <errno.h>
@@ -20,7 +20,7 @@ struct ClockOfId {
   ClockKind kind = ClockKind::kNone;
   bool is_read_only = false;  // no thread can sleep on it or have timers
   bool is_alarm = false;      // would wake a machine that sleeps
-  pid_t owner = 0;            // of processor time: this process or thread; 0: the caller
+  pid_t owner = 0;            // the process or thread whose processor time it is; 0: the caller
 
   constexpr bool IsOfCpu() const {
     return kind == ClockKind::kProcessCpu || kind == ClockKind::kThreadCpu;
@@ -69,7 +69,8 @@ constexpr clockid_t CpuClockOf(pid_t pid) {
   return static_cast<clockid_t>(~static_cast<unsigned>(pid) << 3) | kScheduled;
 }
 
-// Why a thread cannot sleep on it, as the kernel says it of a clock that there is; 0 if it can.
+// The error of a sleep on the clock, as the kernel returns it for a clock that exists; 0 if the
+// thread can sleep on it.
 constexpr int ErrorOfSleepOn(clockid_t id, pid_t sleeper) {
   const ClockOfId clock = ClockOf(id);
   if (clock.kind == ClockKind::kNone) return EINVAL;
@@ -79,7 +80,8 @@ constexpr int ErrorOfSleepOn(clockid_t id, pid_t sleeper) {
   return clock.owner == 0 || clock.owner == sleeper ? EINVAL : EOPNOTSUPP;
 }
 
-// The same for timers on it (timer_create). Computers of robots do not suspend.
+// The error of a timer on the clock (timer_create); 0 if there is none. Computers of robots do not
+// suspend.
 constexpr int ErrorOfTimerOn(const ClockOfId& clock) {
   if (clock.kind == ClockKind::kNone) return EINVAL;
   return clock.is_read_only || clock.is_alarm ? EOPNOTSUPP : 0;

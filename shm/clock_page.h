@@ -18,12 +18,13 @@ namespace tcs::shm {
 
 inline constexpr int kAdjustBits = 48;
 
-// So much of what a thread executes may be its exchange with the coordinator, both ways, each time:
-// virtual nanoseconds.
+// The most of a thread's executed time that one exchange with the coordinator may take, both ways,
+// in virtual nanoseconds.
 inline constexpr std::int64_t kMostExchangeNs = 50'000;
 inline constexpr std::int64_t kMostAttachNs = 20'000'000;  // where a broker is made on the way
 
-// For who works on a page as it was at one instant, whatever others write there meanwhile.
+// For a caller that works on a page as it was at one instant, whatever others write there
+// meanwhile.
 inline void CopyPage(const ClockPage& from, ClockPage* to) {
   __builtin_memcpy(static_cast<void*>(to), static_cast<const void*>(&from), sizeof from);
 }
@@ -43,13 +44,13 @@ inline std::int64_t MulQ32(std::int64_t a, std::uint64_t q) {
   return static_cast<std::int64_t>((static_cast<Wide>(a) * static_cast<Wide>(q)) >> 32);
 }
 
-// What the virtual cycle counter shows when CLOCK_MONOTONIC does `monotonic_ns`.
+// The value of the virtual cycle counter when CLOCK_MONOTONIC shows `monotonic_ns`.
 inline std::uint64_t CounterAt(std::int64_t monotonic_ns, std::uint64_t ticks_per_ns_q32) {
   return static_cast<std::uint64_t>(MulQ32(monotonic_ns, ticks_per_ns_q32));
 }
 
-// One consistent reading. `time_ns` is what the thread has truly reached: neither held back to the
-// horizon nor kept from going below what was shown before.
+// A consistent reading of a clock. `time_ns` is the time that the thread has truly reached: it is
+// neither held back to the horizon nor kept from going below the time that was shown before.
 struct ClockReading {
   std::uint64_t tsc;
   std::int64_t time_ns;
@@ -79,7 +80,8 @@ inline ClockReading ReadClock(const ClockPage& page) {
   }
 }
 
-// What the clock was at `tsc`, for a page that does not change meanwhile: its thread is stopped.
+// The reading of the clock at `tsc`, for a page that does not change meanwhile because its thread
+// is stopped.
 inline ClockReading ReadClockAt(const ClockPage& page, std::uint64_t tsc) {
   ClockReading r;
   r.executed_word = page.executed_adjust.load(std::memory_order_acquire);
@@ -94,27 +96,29 @@ inline ClockReading ReadClockAt(const ClockPage& page, std::uint64_t tsc) {
   return r;
 }
 
-// True where so much has passed since the CPU clock was last asked that much of it may be stolen.
+// True if so much time has passed since the CPU clock was last read that much of it may be stolen.
 inline bool IsCheckDue(const ClockPage& page, const ClockReading& r) {
   return r.tsc - page.last_check_tsc.load(std::memory_order_relaxed) > page.check_after_ticks;
 }
 
-// How long the thread has run, what was stolen meanwhile included. Taking that out of the clock
-// does not turn this back; so it tells apart moments at which the clock shows the same time.
+// How long the thread has run, including the time that was stolen meanwhile. Taking stolen time out
+// of the clock does not turn this value back, so the value tells apart moments at which the clock
+// shows the same time.
 inline std::int64_t RunTime(const ClockPage& page, const ClockReading& r) {
   return r.cpu_ns + page.stolen_ns.load(std::memory_order_relaxed);
 }
 
-// What the clock shows for a reading: at most the horizon, and more than it showed before, where
-// computing takes time. It may have shown more than the thread has computed: a preemption came a
-// little early, or time was found stolen that it had shown. Until the thread has made up for that
-// its clock goes at half its rate: one that stood still would show the same before work and after.
+// The time that the clock shows for a reading: at most the horizon, and more than the clock showed
+// before, where computing takes time. The clock may have shown more than the thread has computed: a
+// preemption came a little early, or time that the clock had shown was found to be stolen. Until
+// the thread has made up for that, its clock goes at half its rate: a clock that stood still would
+// show the same time before work and after it.
 inline std::int64_t ShownTime(const ClockPage& page, const ClockReading& r) {
   const std::int64_t time = r.time_ns < r.horizon_ns ? r.time_ns : r.horizon_ns;
   const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
   if (time > last) return time;
   if (page.ns_per_tick_q32 == 0 || last >= r.horizon_ns) return last;
-  constexpr std::int64_t kLeast = 1, kMost = std::int64_t{1} << 32;  // nobody is behind so far
+  constexpr std::int64_t kLeast = 1, kMost = std::int64_t{1} << 32;  // no thread is so far behind
   const std::int64_t last_cpu = page.last_shown_cpu_ns.load(std::memory_order_relaxed);
   const auto computed = static_cast<std::uint64_t>(r.cpu_ns) - static_cast<std::uint64_t>(last_cpu);
   const std::int64_t half = static_cast<std::int64_t>(computed) / 2;
@@ -130,22 +134,22 @@ inline std::int64_t ShowTime(ClockPage& page, const ClockReading& r) {
   return shown;
 }
 
-// So much less has been charged than it seemed: what is computed from now on moves the clock on,
-// be it behind what it has shown.
+// The thread's charge is `cpu_ns`, less than it seemed. What the thread computes from now on moves
+// its clock on, even if the clock is behind the time that it has shown.
 inline void FollowCharge(ClockPage& page, std::int64_t cpu_ns) {
   if (page.last_shown_cpu_ns.load(std::memory_order_relaxed) > cpu_ns)
     page.last_shown_cpu_ns.store(cpu_ns, std::memory_order_relaxed);
 }
 
-// Charged processor time according to the thread's own CPU clock, which others' use of the
-// processor does not reach.
+// Charged processor time according to the thread's own CPU clock, which the use of the processor by
+// other threads does not move.
 inline std::int64_t CpuTimeFromHostClock(const ClockPage& page, std::int64_t host_cpu_ns) {
   return MulQ32(host_cpu_ns - page.host_cpu_origin_ns, page.ns_per_host_ns_q32);
 }
 
-// Takes out of the clock what the TSC counted and the CPU clock did not: stolen time (negative:
-// what the TSC missed). `host_cpu_ns` must have been read after `r`. False if the thread was
-// dispatched anew since `r`: read again.
+// Takes stolen time out of the clock: time that the TSC counted and the CPU clock did not
+// (negative: time that the TSC missed). `host_cpu_ns` must have been read after `r`. False if the
+// thread was dispatched anew since `r`: the caller reads again.
 inline bool RemoveStolen(ClockPage& page, const ClockReading& r, std::int64_t host_cpu_ns) {
   const std::int64_t stolen = r.cpu_ns - CpuTimeFromHostClock(page, host_cpu_ns);
   std::uint64_t expected = r.executed_word;
@@ -157,8 +161,8 @@ inline bool RemoveStolen(ClockPage& page, const ClockReading& r, std::int64_t ho
   return true;
 }
 
-// Takes out what the TSC and the CPU clock have both counted and the thread has not had; the thread
-// is stopped.
+// Takes out time that the TSC and the CPU clock have both counted and that the thread has not had.
+// The thread is stopped.
 inline void RemoveUnaccounted(ClockPage& page, const ClockReading& r, std::int64_t host_ns) {
   const std::int64_t stolen = MulQ32(host_ns, page.ns_per_host_ns_q32);
   std::uint64_t expected = r.executed_word;
@@ -170,15 +174,15 @@ inline void RemoveUnaccounted(ClockPage& page, const ClockReading& r, std::int64
   page.stolen_ns.fetch_add(stolen, std::memory_order_relaxed);
 }
 
-// The host's nanoseconds for as many of the clock's.
+// The host's nanoseconds for `ns` of the clock's.
 inline std::int64_t HostNsOf(const ClockPage& page, std::int64_t ns) {
   return static_cast<std::int64_t>((static_cast<std::uint64_t>(ns) << 32) /
                                    page.ns_per_host_ns_q32);
 }
 
-// The last `ns` before the reading were spent for the exchange with the coordinator: neither time
-// nor charge of the thread's. Nothing is taken out if that is more than `most_ns`: a handler has
-// run, or others have.
+// Takes out the last `ns` before the reading. The exchange with the coordinator took them, so they
+// are neither time nor charge of the thread. Nothing is taken out if `ns` is more than `most_ns`: a
+// handler has run, or other threads have.
 inline void TakeOut(ClockPage& page, const ClockReading& r, std::int64_t ns, std::int64_t most_ns) {
   if (page.ns_per_tick_q32 == 0 || ns <= 0 || ns > most_ns) return;
   std::uint64_t expected = r.executed_word;
@@ -187,14 +191,15 @@ inline void TakeOut(ClockPage& page, const ClockReading& r, std::int64_t ns, std
   page.host_cpu_origin_ns += HostNsOf(page, ns);
 }
 
-// The same for the time executed since the dispatch, which the way out of the gate takes.
+// As TakeOut, for the time executed since the dispatch, which the way out of the gate takes.
 inline void TakeOutGate(ClockPage& page, const ClockReading& r, std::int64_t most_ns) {
   TakeOut(page, r, r.cpu_ns - page.base_cpu_ns, most_ns);
 }
 
-// Where others share the processor as ordinary tasks, the thread's clock goes on when it leaves its
-// gate, from where its charge was `cpu_ns`. What its CPU clock has counted since is the way to the
-// gate and out of it, as in TakeOutGate; at the reading it says `host_cpu_ns`.
+// Where others share the processor as ordinary tasks, the thread's clock goes on when the thread
+// leaves its gate, from where its charge was `cpu_ns`. The time that its CPU clock has counted
+// since is the way to the gate and out of it, as in TakeOutGate. At the reading the CPU clock says
+// `host_cpu_ns`.
 inline void LeaveGate(ClockPage& page, const ClockReading& r, std::int64_t cpu_ns,
                       std::int64_t host_cpu_ns, std::int64_t most_ns) {
   const std::int64_t counted_ns = CpuTimeFromHostClock(page, host_cpu_ns) - cpu_ns;

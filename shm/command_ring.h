@@ -6,11 +6,11 @@
 //   | posted | taken | Head | bytes, 0s | Head | bytes, 0s | ...   (the ring)
 //   +--------+-------+------+-----------+------+-----------+----
 //
-// The thread writes all but `taken`, and `posted` last. Both are positions: how many bytes of the
-// ring have ever been filled, and emptied. The coordinator keeps a position of its own, copies what
-// it finds, and checks the copy.
+// The thread writes all but `taken`, and `posted` last. `posted` and `taken` are positions: how
+// many bytes of the ring have ever been filled, and emptied. The coordinator keeps a position of
+// its own, copies what it finds, and checks the copy.
 //
-// All of it is async-signal-safe, takes no lock and makes no system call.
+// The functions here are async-signal-safe, take no lock and make no system call.
 #pragma once
 
 #include <string.h>
@@ -26,9 +26,9 @@ struct CommandRing {
   static constexpr std::uint64_t kBytes = 2032;
 
   struct Head {
-    std::int64_t time_ns;    // what the thread's clock had shown
+    std::int64_t time_ns;    // the time that the thread's clock had shown
     std::int64_t ran_ns;     // how long the thread had run (RunTime)
-    std::uint32_t receiver;  // its place in OwnReceivers
+    std::uint32_t receiver;  // the receiver's place in OwnReceivers
     std::uint32_t size;      // of the datagram, which follows; never 0
   };
   static constexpr std::uint64_t kMostSize = kBytes - sizeof(Head);  // of a datagram
@@ -41,7 +41,7 @@ static_assert(sizeof(CommandRing::Head) == 24);
 static_assert(sizeof(CommandRing) == 2048);
 static_assert(offsetof(CommandRing, bytes) == 16);
 
-// What a datagram of `size` bytes takes of the ring.
+// The bytes of the ring that a datagram of `size` bytes takes, with its head.
 constexpr std::uint64_t RoomFor(std::uint64_t size) {
   constexpr std::uint64_t kUnit = 8;
   return sizeof(CommandRing::Head) + (size + kUnit - 1) / kUnit * kUnit;
@@ -54,7 +54,7 @@ inline bool HasRoomFor(const CommandRing& ring, std::uint64_t size) {
          RoomFor(size) <= CommandRing::kBytes - filled;
 }
 
-// At most kBytes.
+// `size` is at most kBytes.
 inline void CopyIntoRing(CommandRing& ring, std::uint64_t position, const void* from,
                          std::size_t size) {
   const std::uint64_t place = position % CommandRing::kBytes;
@@ -71,7 +71,8 @@ inline void CopyFromRing(const CommandRing& ring, std::uint64_t position, void* 
   memcpy(static_cast<unsigned char*>(to) + first, ring.bytes, size - first);
 }
 
-// Puts a datagram in, whose bytes `put(position)` copies into the ring; there is room for it.
+// Puts a datagram into the ring, which must have room for it. `put(position)` copies its bytes
+// there.
 template <class Put>
 void PostInto(CommandRing& ring, const CommandRing::Head& head, Put put) {
   const std::uint64_t begin = ring.posted.load(std::memory_order_relaxed);
@@ -80,14 +81,14 @@ void PostInto(CommandRing& ring, const CommandRing::Head& head, Put put) {
   ring.posted.store(begin + RoomFor(head.size), std::memory_order_release);
 }
 
-// The head of what is at `position`, where the ring is filled up to `end`. False if that cannot be;
-// else the datagram's bytes follow the head.
+// The head of the datagram at `position`, where the ring is filled up to `end`. False if no
+// datagram can be there; else the datagram's bytes follow the head.
 inline bool ReadHead(const CommandRing& ring, std::uint64_t position, std::uint64_t end,
                      CommandRing::Head* head) {
   const std::uint64_t left = end - position;
   if (left < sizeof *head || left > CommandRing::kBytes) return false;
   CopyFromRing(ring, position, head, sizeof *head);
-  std::atomic_signal_fence(std::memory_order_seq_cst);  // what is checked is not read again
+  std::atomic_signal_fence(std::memory_order_seq_cst);  // the values checked are not read again
   return head->size > 0 && head->size <= CommandRing::kMostSize && RoomFor(head->size) <= left;
 }
 

@@ -1,9 +1,10 @@
-// What a thread notes of the datagrams that it sends and receives (RunHeader::notes_activity):
-// when, and at which address they are received. The coordinator makes of it who received what from
-// whom, for the kernel hands datagrams of one address out in the order in which they were sent.
+// The notes of a thread about the datagrams that it sends and receives (RunHeader::notes_activity):
+// when, and the address at which they are received. From the notes the coordinator works out who
+// received what from whom, because the kernel hands out the datagrams of one address in the order
+// in which they were sent.
 //
-// Written by the thread, emptied by the coordinator when it has stopped, which trusts nothing in
-// it.
+// The thread writes the notes. The coordinator empties them when the thread has stopped, and trusts
+// nothing in them.
 #pragma once
 
 #include <string.h>
@@ -19,8 +20,8 @@ struct DatagramNotes {
   static constexpr std::uint32_t kMost = 32;
   static constexpr std::size_t kMostBytes = 38;
 
-  // A send is noted before it is made, for the receiver may be the next to run; and taken back
-  // where it has failed.
+  // A send is noted before it is made, for the receiver may be the next to run; and the note is
+  // taken back where the send has failed.
   // kTaken is of DDS samples, and has no address (SamplesOf).
   enum class What : std::uint16_t { kSent = 0, kReceived = 1, kTakenBack = 2, kTaken = 3 };
 
@@ -28,14 +29,14 @@ struct DatagramNotes {
     std::int64_t time_ns;  // the thread's clock
     std::uint64_t hash;    // of all bytes of the address, as AddressOf has them
     std::uint16_t count;   // of datagrams
-    std::uint16_t drops;   // the socket's that received: of how many the kernel has dropped, modulo
+    std::uint16_t drops;   // datagrams that the kernel dropped at the receiving socket, modulo 2^16
     What what;
-    std::uint16_t size;  // of what follows, which is the beginning of a long address
+    std::uint16_t size;  // of the address in `bytes`, which is the beginning of a long one
     unsigned char bytes[kMostBytes];
     // Of what is received: how many receipts (receipts.h) the thread had noted by then. The last of
-    // them began the activation that this belongs to.
+    // these receipts began the activation that this note belongs to.
     std::uint8_t activation;
-    std::uint8_t is_last;  // 1: no more waited there, as far as the kernel says
+    std::uint8_t is_last;  // 1: no more datagrams waited there, as far as the kernel says
   };
 
   std::atomic<std::uint32_t> count;

@@ -1,5 +1,5 @@
-// What the messages about participants and endpoints carry (dds_exchange.h): the names and the QoS,
-// as plain numbers and texts, so that the coordinator can read them and make some of its own.
+// The payload of the messages about participants and endpoints (dds_exchange.h): names and QoS, as
+// plain numbers and texts, so that the coordinator can read such messages and make some of its own.
 //
 //   kParticipant: DdsQos, then its texts.
 //   kEndpoint, kTopic: DdsEndpoint, then its texts.
@@ -9,11 +9,12 @@
 // kinds, of the DDS specification: 0 volatile, 1 transient local, …; durations are ns, INT64_MAX
 // for ever.
 //
-// An endpoint's GUID belongs to its participant: its first 12 bytes are the participant's, its last
+// An endpoint's GUID belongs to its participant: the first 12 bytes are the participant's, the last
 // byte says what it is (kDds…Id). When the process of a transient-local writer is told of a
 // reliable transient-local reader of its topic, it must answer with what the writer has, as
 // kSamples addressed to that reader, and then kHistoryEnd. The reader gets nothing of that writer
-// before. The same, with nothing to send, where such a writer is new and the reader is not.
+// before. The process does the same, with nothing to send, where such a writer is new and the
+// reader is not.
 #pragma once
 
 #include <cstddef>
@@ -117,7 +118,7 @@ inline constexpr std::uint32_t kDdsTopic = 3;  // in a kTopic
 
 struct DdsEndpoint {
   std::uint32_t kind;     // kDdsReader, kDdsWriter, kDdsTopic
-  std::uint32_t keyless;  // 1: its type has no key
+  std::uint32_t keyless;  // 1: the endpoint's type has no key
   DdsBytes topic;
   DdsBytes type;  // no zero at the end, as with topic
   // XTypes' TypeInformation and TypeMapping as XCDR2, little-endian; of types without them empty.

@@ -10,21 +10,23 @@
 //               written by the     written by the
 //               process            coordinator
 //
-// To send, a process writes whole messages into its outbox and notifies (kDdsSend): they carry the
-// virtual time of that notification. The coordinator copies them out, checks them, and keeps them
-// in the order of their times. One thread of each process, the *deliverer*, waits for what is due
-// (kDdsWait): the coordinator wakes it at the message's time, the messages in its inbox. It is
-// scheduled by the robot's scheduler, as a middleware's threads are, because the program's
-// listeners run on it. A thread that is about to look at what has come first waits until no program
-// can send anything before its own time any more (kRead), and then until the deliverer is done
-// (kDdsSync). Meanwhile it lends the deliverer its priority (priority inheritance).
+// To send, a process writes whole messages into its outbox and notifies (kDdsSend): the messages
+// carry the virtual time of that notification. The coordinator copies them out, checks them, and
+// keeps them in the order of their times. One thread of each process, the *deliverer*, waits for
+// messages that are due (kDdsWait): the coordinator wakes it at the message's time, the messages in
+// its inbox. The robot's scheduler schedules the deliverer, as it does a middleware's threads,
+// because the program's listeners run on it. A thread that is about to look at what has come first
+// waits until no program can send anything before the thread's own time any more (kRead), and then
+// until the deliverer is done (kDdsSync). Meanwhile the thread lends the deliverer its priority
+// (priority inheritance).
 //
 // Back-pressure: a process for which more waits than it can take at once is *full*, because it
 // takes more slowly than others write, or hangs. The coordinator shows in all areas which processes
-// are full. What then happens to a sample is what DDS says (DdsMessage::keep_last, kDdsUnreliable).
-// A reliable writer that keeps all samples waits before it writes the next one (kDdsRoom), for as
-// long as its QoS say, and then its write fails. Of a writer that keeps the last few, further
-// samples of an instance replace the ones that wait. Best-effort samples are dropped and counted.
+// are full. A sample for a full process is treated as DDS says (DdsMessage::keep_last,
+// kDdsUnreliable). A reliable writer that keeps all samples waits before it writes the next one
+// (kDdsRoom), for as long as its QoS say, and then its write fails. Of a writer that keeps the last
+// few, further samples of an instance replace the ones that wait. Best-effort samples are dropped
+// and counted.
 //
 // The coordinator remembers participants and endpoints: a process that joins later is told of them,
 // and when a process dies its participants are reported as gone once their leases are over. The
@@ -39,8 +41,8 @@ namespace tcs::shm {
 
 inline constexpr std::size_t kDdsHeaderSize = 4096;
 inline constexpr std::size_t kDdsBoxSize = std::size_t{128} << 20;
-// Messages are handed over so many at a time, but for one that is larger, which comes alone; the
-// memory of what is larger is given back.
+// The bytes of messages that are handed over at a time. A larger message comes alone, and its
+// memory is given back.
 inline constexpr std::size_t kDdsUsualSize = std::size_t{16} << 20;
 inline constexpr std::size_t kDdsAreaSize = kDdsHeaderSize + 2 * kDdsBoxSize;
 inline constexpr std::uint32_t kDdsMostProcesses = 1024;
@@ -56,7 +58,7 @@ inline constexpr std::uint32_t kDdsData = 2;
 struct alignas(64) DdsArea {
   std::atomic<std::int64_t> due_ns;       // of the earliest message not handed over; kNeverNs
   std::atomic<std::uint32_t> delivers;    // 1: the deliverer has not come back for more yet
-  std::uint32_t process;                  // its number
+  std::uint32_t process;                  // the process's number
   std::atomic<std::uint32_t> full_count;  // processes that are full
   std::uint32_t reserved32;
   std::uint64_t reserved[5];
@@ -72,12 +74,12 @@ static_assert(offsetof(DdsArea, full) == 64);
 static_assert(sizeof(DdsArea) <= kDdsHeaderSize);
 
 enum class DdsKind : std::uint16_t {
-  kParticipant = 1,  // subject: its GUID; payload: DdsQos
-  kEndpoint = 2,     // subject: its GUID; other: its participant's; payload: dds_endpoint.h
+  kParticipant = 1,  // subject: the participant's GUID; payload: DdsQos
+  kEndpoint = 2,     // subject: the endpoint's GUID; other: its participant's; payload: DdsEndpoint
   kSample = 3,      // subject: the writer's GUID; other: the reader's, or zeros for all that match;
                     // payload: CDR with its encapsulation header
-  kHistoryEnd = 4,  // subject: a writer's GUID, other: a reader's: this one has been sent all that
-                    // the writer had when they met
+  kHistoryEnd = 4,  // subject: a writer's GUID, other: a reader's: the reader has been sent all
+                    // that the writer had when they met
   kTopic = 6,       // as kEndpoint: of topics that are made known by themselves, which Cyclone's
                     // configuration asks for (EnableTopicDiscoveryEndpoints)
   kLiveliness = 5,  // subject: a writer's or a participant's GUID: asserted, or with kDdsGone lost
@@ -95,7 +97,7 @@ inline constexpr std::uint16_t kDdsUnreliable = 4;
 inline constexpr std::uint16_t kDdsToSender = 8;
 
 struct DdsMessage {
-  std::uint32_t size;  // of all, a multiple of 8: this, the payload, zeros
+  std::uint32_t size;  // of the whole message, a multiple of 8: this structure, the payload, zeros
   DdsKind kind;
   std::uint16_t flags;
   std::uint32_t from;    // set by the coordinator
@@ -109,9 +111,9 @@ struct DdsMessage {
   std::uint32_t status_info;         // of samples: Cyclone's NN_STATUSINFO_* bits
   std::uint32_t sample_kind;  // of samples, Cyclone's ddsi_serdata_kind: kDdsData or of a key only
   std::uint32_t payload_size;
-  // Of samples for all readers: of a reliable writer that keeps only so many of an instance, 0:
-  // all; and the instance, by its number in the writer's process. Of participants, `instance` is
-  // DdsTag of their domain.
+  // Of samples for all readers: `keep_last` is how many samples of an instance a reliable writer
+  // keeps (0: all), `instance` the number of the instance in the writer's process. Of participants,
+  // `instance` is DdsTag of their domain.
   std::uint32_t keep_last;
   std::uint32_t sender_ran;  // the coordinator's own: see Hub::Send, the lower half
   std::uint64_t instance;
@@ -122,7 +124,7 @@ static_assert(offsetof(DdsMessage, source_timestamp_ns) == 56);
 static_assert(offsetof(DdsMessage, instance) == 96);
 
 // The tag that Cyclone's configuration may give a domain (Discovery/Tag). Participants of domains
-// with different tags do not meet. The coordinator meets all.
+// with different tags do not meet. The coordinator meets the participants of all domains.
 inline constexpr std::uint64_t DdsTag(const char* tag) {
   if (tag == nullptr || *tag == '\0') return 0;
   std::uint64_t hash = 0xcbf29ce484222325u;

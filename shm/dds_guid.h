@@ -10,7 +10,7 @@ namespace tcs::dds {
 // In the order of bytes in which DDS sends them: a participant's twelve, then an endpoint's four.
 using Guid = std::array<std::uint8_t, 16>;
 
-// `bytes` points to 16 of them.
+// `bytes` points to 16 bytes.
 inline Guid GuidAt(const std::uint8_t* bytes) {
   Guid guid;
   std::copy_n(bytes, guid.size(), guid.begin());

@@ -1,5 +1,6 @@
-// What programs draw from the system under fixed accounting: numbers that repeat, in place of the
-// kernel's. The shim draws for the calls that it sees, the coordinator for those that are trapped.
+// The random numbers that programs draw from the system under fixed accounting: numbers that
+// repeat, in place of the kernel's. The shim draws for the calls that it sees, the coordinator for
+// the calls that are trapped.
 #pragma once
 
 #include <sys/stat.h>
@@ -54,7 +55,7 @@ inline bool IsRandomDevice(const struct stat& status) {
 // A file that the kernel makes a new identifier for at each read.
 inline constexpr char kUuidFile[] = "/proc/sys/kernel/random/uuid";
 
-// Whether it can be that one: its name has to be asked for, which costs a call.
+// Whether the file can be kUuidFile. Only its name, which costs a call to ask for, tells for sure.
 inline bool MayBeUuidFile(const struct stat& status) {
   return S_ISREG(status.st_mode) && status.st_size == 0 && (status.st_mode & 0777) == 0444;
 }

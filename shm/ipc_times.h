@@ -1,7 +1,7 @@
-// When System V objects were changed and used, in virtual time: what the kernel keeps of that is
-// the host's. A table, zero at first, that all clients read and only the coordinator writes: a
-// thread notes in its slot what it has done, and the coordinator takes that over when the thread
-// stops.
+// The virtual times at which System V objects were changed and used: the times that the kernel
+// keeps are the host's. The table is zero at first; all clients read it and only the coordinator
+// writes it. A thread notes in its slot what it has done, and the coordinator takes that over when
+// the thread stops.
 //
 // A place belongs to an object from its first use on. The places of removed objects are used again,
 // in no particular order, once all places that an object may have are taken.
@@ -15,7 +15,7 @@ namespace tcs::shm {
 
 enum class IpcKind : std::uint32_t { kMessages = 1, kSemaphores = 2, kMemory = 3 };
 
-// What a time is of; the kernel has up to three of each object.
+// The event that a time is of; the kernel has up to three times of each object.
 enum class IpcEvent : std::uint32_t {
   kChanged = 0,  // made, or its properties set
   kPut = 1,      // a message sent, semaphores operated on, memory attached
@@ -52,7 +52,7 @@ inline const IpcPlace* FindIpcPlace(const IpcTimes& times, std::uint64_t object)
   return nullptr;
 }
 
-// The same, made if need be; null if there is no room.
+// The object's place, made if the object has none; null if there is no room.
 inline IpcPlace* TakeIpcPlace(IpcTimes& times, std::uint64_t object) {
   if (const IpcPlace* place = FindIpcPlace(times, object); place != nullptr) {
     return const_cast<IpcPlace*>(place);

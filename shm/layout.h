@@ -44,8 +44,8 @@ inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // hours.
 inline constexpr std::int64_t kMaxDispatchNs = std::int64_t{1} << 46;
 
-// What the shim tells the coordinator. The thread is stopped from its notification to its next
-// dispatch.
+// The kinds of notification from the shim to the coordinator. The thread is stopped from its
+// notification to its next dispatch.
 enum class NotificationKind : std::uint32_t {
   kNone = 0,
   kHorizon = 1,    // the thread's clock has reached its horizon
@@ -58,8 +58,8 @@ enum class NotificationKind : std::uint32_t {
                    // deadline_ns; args[0]: 1 if one event of the one descriptor is for one waiter,
                    // the first of several that came, 2 if for the last;
                    // args[2]: 1 to keep the place of the last such wait; args[3]: a KeepFiles;
-                   // reply[0]: 1 if files are kept from now on; reply[1]: 1 if others were passed
-                   // over, and want to know (kPassOn)
+                   // reply[0]: 1 if files are kept from now on; reply[1]: 1 if other waiters were
+                   // passed over, and want to know (kPassOn)
   kPassOn = 32,    // the thread has taken what it was woken for
   kWaitChild = 6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or also, if
                    // args[1] is not 0, until one stops or goes on; or deadline_ns
@@ -92,20 +92,20 @@ enum class NotificationKind : std::uint32_t {
   kWaitObject = 22,     // sleep until a kernel object is changed, or deadline_ns; args[0]: a
                      // KernelObjectKind, args[1]: its number, args[2]: 1 to keep the place of the
                      // last such wait; args[3]: 0, or 1 more than a descriptor whose file is kept
-                     // as with KeepFiles::kForCall; -1: what is kept already
+                     // as with KeepFiles::kForCall; -1: the file that is kept already
   kWakeObject = 23,    // the object of args[0] and args[1] has been changed
   kTimerOverrun = 24,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
                        // reply[0]: overruns of the signal accepted last
   // Of programs that speak DDS (dds_exchange.h).
-  kDdsJoin = 25,  // reply[0]: its number, or negative for an errno; reply[1]: the drift bound, ns.
-                  // It then asks for its area (attach_protocol.h)
+  kDdsJoin = 25,  // reply[0]: the process's number, or negative for an errno; reply[1]: the drift
+                  // bound, ns. The process then asks for its area (attach_protocol.h)
   kDdsSend = 26,  // args[0]: bytes of messages in the outbox
   kDdsWait = 27,  // the thread is the deliverer: sleep until something is due; reply[0]: bytes of
                   // messages in the inbox
   kDdsSync = 28,  // go on once the deliverer has handed over what is due, or waits for others
-  kDdsRoom = 29,  // args[0]: go on once less waits for that process, or at the deadline
+  kDdsRoom = 29,  // go on once less waits for the process args[0], or at the deadline
   kDdsSockets =
-      30,  // its DDS uses sockets, though it was to use dds_exchange.h; args[0]: WhySockets
+      30,  // a program's DDS uses sockets, though it was to use dds_exchange.h; args[0]: WhySockets
   kKernelWait = 31,  // in its next system call the kernel may hold the thread; see kernel_waiters
   kCall = 33,  // a call begins: what the thread did before is done (RunHeader::is_unprivileged)
   kPreempted = 34,  // the thread computes, and has got kPreemptionSignal
@@ -114,14 +114,14 @@ enum class NotificationKind : std::uint32_t {
                 // socket's cookie, args[1]: the name's hash
   kSignals =
       37,  // the thread is about to send a signal to process args[0], or a group: as kReaches
-  kReaches = 36,  // the thread is about to reach a local socket of robot args[0], from another one
-                  // or with a descriptor that leaves its own: go on as with kWrite, and once that
-                  // robot has looked for the last time without waiting for others
+  kReaches = 36,  // the thread is about to reach a local socket of robot args[0], from another
+                  // robot or with a descriptor that leaves its own: go on as with kWrite, and once
+                  // that robot has looked for the last time without waiting for others
   kCounterReads = 39,  // code of the program reads the processor's cycle counter and could not be
                        // led to the virtual one; args[0]: in how many places, args[1]: the
                        // first, args[2]: WhereReads
-  kChildUsage = 38,    // args[0]: pid of a child that has ended; reply[0]: what it and its own
-                       // children were charged, ns; -1: not known
+  kChildUsage = 38,    // args[0]: pid of a child that has ended; reply[0]: what the child and its
+                       // own children were charged, ns; -1: not known
   kSpins = 41,         // the thread looks at memory again and again (ThreadSlot::spin)
   kSetDate = 42,       // CLOCK_REALTIME shows args[0] now; reply[0]: 0, or negative for an errno
   kOutside = 40,  // of a file by which the program may meet what is outside of the run; args: an
@@ -129,9 +129,9 @@ enum class NotificationKind : std::uint32_t {
 };
 
 // The signal by which the coordinator stops a thread that computes, where only gates keep threads
-// apart, and under set costs one that is not dispatched (RunHeader::preempts). It is one of the two
-// signals that the C library keeps for itself: programs can neither catch nor block it, and it is
-// in none of their sets. The library uses it for set*id() in programs of several threads, and
+// apart, and under set costs a thread that is not dispatched (RunHeader::preempts). The signal is
+// one of the two that the C library keeps for itself: programs can neither catch nor block it, and
+// it is in none of their sets. The library uses it for set*id() in programs of several threads, and
 // recognises its own signals by their sender. The signal carries the number of the dispatch that is
 // to end; or kAsksWhere: then the thread only looks whether it spins (SpinStreak::in_loop).
 inline constexpr int kPreemptionSignal = 33;
@@ -140,37 +140,38 @@ inline constexpr std::uint64_t kAsksWhere = std::uint64_t{1} << 32;
 // Of ClockPage::counts_work, where only gates keep threads apart: the dispatch begins in a call
 // that the kernel carries out, so that the thread says once it is done (kCall).
 inline constexpr std::uint64_t kBeginsInCall = 2;
-// The same for a thread that computes ahead of its turns: each of its calls begins at its gate.
+// Of ClockPage::counts_work, too: the thread computes ahead of its turns, and each of its calls
+// begins at its gate.
 inline constexpr std::uint64_t kIsAhead = 4;
 
 inline constexpr std::int64_t kKeepPolicy = -1;
 
-// Linux keeps the file of a call for as long as that lasts, whatever its number comes to mean
-// meanwhile. So does the coordinator with the files that a thread waits for, and beyond the wait
-// where their numbers then mean others, or none: until the thread's next wait that does not want
-// them, or kLeaveFiles.
+// Linux keeps the file of a call for as long as the call lasts, whatever the file's number comes to
+// mean meanwhile. So does the coordinator with the files that a thread waits for. Where their
+// numbers mean other files after the wait, or none, it keeps them beyond the wait: until the
+// thread's next wait that does not want them, or kLeaveFiles.
 enum class KeepFiles : std::int64_t {
   kNot = 0,
-  kForCall = 1,  // of the one descriptor in `fds`; with no events: it is not waited for
-  kForPoll = 2,  // of all of them: they are looked for by their numbers, and waited for as files
-  kAgain = 3,    // those that were kept are waited for
+  kForCall = 1,  // the file of the one descriptor in `fds`; with no events it is not waited for
+  kForPoll = 2,  // the files of all of them: found by their numbers, waited for as files
+  kAgain = 3,    // the files that were kept are waited for
   kForSet = 4,   // as kForCall, of an epoll set
 };
 
-// Operations of futex(2), for the shim to say something without a notification: they are always
-// handed over, and answered at once. The kernel knows neither.
+// Operations of futex(2), for the shim to say something without a notification: the calls are
+// always handed over, and answered at once. The kernel knows neither operation.
 inline constexpr std::uint32_t kTakeFile = 0x7c570001;    // a descriptor of the file that was kept
-inline constexpr std::uint32_t kLeaveFiles = 0x7c570002;  // those that were kept are given up
+inline constexpr std::uint32_t kLeaveFiles = 0x7c570002;  // the files that were kept are given up
 
 enum class WhySockets : std::uint32_t {
-  kOtherLibrary = 1,     // its libddsc is none that libtcs_dds.so is written for
-  kLooksUpItself = 2,    // it looks libddsc's functions up by itself, past the shim
+  kOtherLibrary = 1,     // the program's libddsc is none that libtcs_dds.so is written for
+  kLooksUpItself = 2,    // the program looks libddsc's functions up by itself, past the shim
   kNoLibraryOfOurs = 3,  // libtcs_dds.so cannot be loaded
-  kNoRoom = 4            // it could not join
+  kNoRoom = 4            // the process could not join
 };
 
-// Kernel objects that cannot be polled. Two are for waking only. kTerminals: what is written to one
-// end of a terminal reaches the other some time later, unless a thread polls. kKernelWaits: the
+// Kernel objects that cannot be polled. Two kinds are for waking only. kTerminals: bytes written to
+// one end of a terminal reach the other some time later, unless a thread polls. kKernelWaits: the
 // kernel may have let threads go on that it held.
 enum class KernelObjectKind : std::uint32_t {
   kSemaphores = 1,
@@ -186,8 +187,8 @@ enum class WhereReads : std::int64_t {
   kInMadeCode = 1,  // made at run time
 };
 
-// What a timer runs on, and what it does besides making a descriptor readable. A sigset's bit 0 is
-// signal 1.
+// The clock that a timer runs on, and what the timer does besides making a descriptor readable. A
+// sigset's bit 0 is signal 1.
 enum class TimerClock : std::uint16_t { kTime = 0, kProcessCpu = 1, kThreadCpu = 2 };
 struct TimerKind {
   TimerClock clock = TimerClock::kTime;
@@ -212,7 +213,7 @@ enum class WakeReason : std::uint32_t {
   kGo = 0,        // nothing was waited for, or what was waited for is there
   kDeadline = 1,  // deadline_ns was reached
   kSignal = 2,    // a signal was sent to the process
-  kCutOff = 3,    // its notification has not arrived: the connection is another file by now
+  kCutOff = 3,    // the notification has not arrived: the connection is another file by now
 };
 
 enum class Accounting : std::uint32_t { kMeasured = 1, kFixed = 2 };
@@ -255,13 +256,13 @@ struct ClockPage {
   // accounting.
   std::int64_t allocation_cost_ns;
   std::uint32_t counts_work;  // not 0: the thread keeps its WorkCounts; kBeginsInCall
-  // Written by the coordinator, once: 1: others have the thread's storage, too
+  // Written by the coordinator, once: 1: other threads have the thread's storage, too
   // (libtcs_preload/shared_storage.cc).
   std::atomic<std::uint32_t> shares_storage;
   // Nothing is produced before this any more in sockets that are local to the robot.
   std::int64_t local_read_safe_ns;
-  // Written by the thread, and by the coordinator at each dispatch: what the thread was charged
-  // when its clock showed last_shown_ns.
+  // Written by the thread, and by the coordinator at each dispatch: the thread's charge when its
+  // clock showed last_shown_ns.
   std::atomic<std::int64_t> last_shown_cpu_ns;
 };
 static_assert(sizeof(ClockPage) == 192);
@@ -290,12 +291,12 @@ struct Notification {
 };
 static_assert(sizeof(Notification) == 312);
 
-// What the shim leaves in the last argument, unused, of the system calls that it makes itself: they
-// are the kernel's; in recvfrom and sendto it is in the upper half of the flags. All others that
-// wait or read time are handed to the coordinator.
+// The mark that the shim leaves in the last, unused argument of the system calls that it makes
+// itself: those calls go to the kernel. In recvfrom and sendto the mark is in the upper half of the
+// flags. All other calls that wait or read time are handed to the coordinator.
 inline constexpr std::uint32_t kOwnCallMark = 0x7c57a7e1;
 
-// What a thread has done to a System V object since it was last dispatched (ipc_times.h).
+// An operation of a thread on a System V object since the thread was last dispatched (ipc_times.h).
 struct IpcNote {
   std::uint64_t object;
   std::int64_t at_ns;  // CLOCK_REALTIME
@@ -312,24 +313,24 @@ inline constexpr std::uint32_t kGateWaiting =
     2;  // written by the thread: it is in futex(2), wake it
 
 // Whether a thread's dispatch is one whose end the coordinator looks for in the slot itself,
-// because the thread runs beside it, on another processor of the host. Such a dispatch begins when
-// the thread leaves its gate, and ends when it has said so here: `stopped_tsc` is when.
+// because the thread runs beside the coordinator, on another processor of the host. Such a dispatch
+// begins when the thread leaves its gate, and ends when the thread has said so here: `stopped_tsc`
+// is when.
 //
 //            the coordinator                    the thread
 //   kByPipe ---------------> kRuns -----------------------------------> kSaid
-//      ^ ^                     | it is waited for no longer               |  | a handler waits
-//      until | +---------------------+                                          |  v the note is
-//      taken
+//      ^ ^                     | the end is waited for no longer          |  | a handler waits
+//      | +---------------------+                                          |  v until it is taken
 //      +------------------------------------------------------------------+- kSaidAndWaits
 enum class Saying : std::uint32_t {
   kByPipe = 0,        // a notification is told by the pipe
-  kRuns = 1,          // by this word
-  kSaid = 2,          // it has been, and the coordinator has not taken it yet
-  kSaidAndWaits = 3,  // and is to wake the thread in futex(2) when it has
+  kRuns = 1,          // a notification is told by this word
+  kSaid = 2,          // the notification is told, and the coordinator has not taken it yet
+  kSaidAndWaits = 3,  // as kSaid; taking it, the coordinator is to wake the thread in futex(2)
 };
 
-// ThreadSlot::signals: the shim makes the system call, of which nobody else hears; or the C library
-// makes one, which the kernel hands over.
+// In ThreadSlot::signals: the shim makes the system call, of which only the shim knows; or the C
+// library makes the call, which the kernel hands over.
 inline constexpr std::uint32_t kSendsItself = 1;
 inline constexpr std::uint32_t kSendsByLibrary = 1U << 16;
 
@@ -348,19 +349,21 @@ struct alignas(64) ThreadSlot {
   std::uint64_t seed;   // of everything the thread draws from the system in deterministic modes
   std::uint32_t patch_vdso;     // 1: calls of the vDSO are to be led to the shim
   std::uint32_t dds_endpoints;  // 1: Cyclone DDS is to use dds_exchange.h instead of sockets
-  // Written by the thread: not 0 while it may have sent a signal and not yet said so (kSignalled):
-  // how often, each time kSendsItself or kSendsByLibrary.
+  // Written by the thread: not 0 while the thread may have sent a signal and not yet said so
+  // (kSignalled): how often, each time kSendsItself or kSendsByLibrary.
   std::atomic<std::uint32_t> signals;
-  // Written by the thread, emptied by the coordinator when it has stopped.
+  // Written by the thread, emptied by the coordinator when the thread has stopped.
   std::atomic<std::uint32_t> ipc_count;
   IpcNote ipc_notes[kMostIpcNotes];
   Receipts receipts;
   WorkCounts work;  // written by the thread, where it is counted
   // Written by the thread before it notifies, where only gates keep threads apart: the signals that
-  // it blocks at its gate. What the kernel knows is true only once it waits there.
+  // the thread blocks at its gate. The kernel's knowledge of them is true only once the thread
+  // waits there.
   std::uint64_t blocked_signals;
   // Written by the thread: how many of its calls the shim has begun and not ended. More than one:
-  // handlers' within others'. Too many where a handler has left by longjmp.
+  // calls of handlers within other calls. The count is too high where a handler has left by
+  // longjmp.
   std::atomic<std::uint32_t> open_calls;
   // Written by the coordinator at the attach: the robot's number, as in local_sockets.h.
   std::uint32_t robot;
@@ -370,8 +373,9 @@ struct alignas(64) ThreadSlot {
   std::atomic<std::uint32_t> waits_in_call;
   std::uint64_t stopped_tsc;
   DatagramNotes datagrams;
-  // Written by the thread: not 0 while it makes a thread or a process of which it will say so
-  // (kMadeThread, kSpawned). What the kernel makes for it at other times never attaches, or later.
+  // Written by the thread: not 0 while the thread makes a thread or a process that it will announce
+  // (kMadeThread, kSpawned). A thread or process that the kernel makes for it at other times never
+  // attaches, or attaches later.
   std::atomic<std::uint32_t> announces;
   // Written by the thread: how many descriptors it has closed or replaced, as far as the shim sees
   // it.
@@ -379,16 +383,17 @@ struct alignas(64) ThreadSlot {
   // Written by the coordinator at the attach: 1: reads of the cycle counter are to be led to the
   // virtual one.
   std::uint32_t leads_counter;
-  // Likewise: what a thread that spins computes between two pauses at most, by its clock; 0: they
-  // are not to be counted (spin_streak.h).
+  // Likewise: the most that a thread that spins computes between two pauses, by its clock; 0:
+  // pauses are not to be counted (spin_streak.h).
   std::uint32_t spin_gap_ns;
   SpinStreak spin;  // written by the thread
-  // Written by the coordinator at each dispatch: a thread that spins ends its turn then, by its
-  // clock. kNeverNs where nobody else computes whom it could wait for.
+  // Written by the coordinator at each dispatch: the time, by the thread's clock, at which it ends
+  // its turn if it spins. kNeverNs where no other thread computes for which it could wait.
   std::int64_t spin_until_ns;
   alignas(64) CommandRing command_ring;
-  // Written by the thread when a handler comes before its note is answered, and `note` says so
-  // (kInterrupted): that note. Nobody may have read it yet.
+  // Written by the thread when a handler comes before the thread's note is answered, and `note`
+  // says so (kInterrupted): the note that was there before. The coordinator may not have read it
+  // yet.
   Notification interrupted;
 };
 static_assert(sizeof(ThreadSlot) == 5696);
@@ -427,13 +432,13 @@ struct alignas(64) RunHeader {
   Sync sync;
   std::atomic<std::uint32_t> queues_notify;  // 1: a send to a message queue may send a signal
   std::atomic<std::uint32_t>
-      object_waiters;  // threads that kWakeObject may concern; if none it is spared
-  std::atomic<std::uint32_t> kernel_waiters;  // the same for its kKernelWaits
+      object_waiters;  // threads that kWakeObject may concern; if none the call is spared
+  std::atomic<std::uint32_t> kernel_waiters;  // as object_waiters, for kKernelWaits
   // 1: only their gates keep threads that are not dispatched from running on: each call that the
   // shim sees begins with kCall.
   std::uint32_t is_unprivileged;
   std::uint32_t preempts;     // 1: the coordinator sends kPreemptionSignal
-  std::uint32_t has_brokers;  // 1: each process has one (attach_protocol.h)
+  std::uint32_t has_brokers;  // 1: each process has a broker (attach_protocol.h)
   // 1: each robot has abstract names of its own (a network namespace).
   std::uint32_t names_by_robot;
   // 1: threads note the datagrams that they send and receive, and sleeps that they need not ask
@@ -450,7 +455,7 @@ static_assert(sizeof(RunHeader) == 128);
 static_assert(offsetof(RunHeader, monotonic_offset_ns) == 32);
 static_assert(offsetof(RunHeader, counter_ticks_per_ns_q32) == 96);
 
-// What only the coordinator writes.
+// The memory that only the coordinator writes.
 struct RunMemory {
   RunHeader header;
   IpcTimes ipc_times;

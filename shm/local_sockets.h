@@ -6,8 +6,9 @@
 //   bind      the coordinator is told before the kernel is: the name and the socket are the robot's
 //   look      a socket that is here, and of the own robot: ClockPage::local_read_safe_ns is enough
 //   send, connect to a name that is here, of another robot: the coordinator is told before
-//             (NotificationKind::kReaches). It takes all that is that robot's out of here, for
-//             good, and the sender goes on once it is as far as that robot has looked.
+//             (NotificationKind::kReaches). The coordinator takes that robot's names and sockets
+//             out of here, for good, and the sender goes on once it is as far as that robot has
+//             looked.
 //
 // A descriptor that leaves its robot (SCM_RIGHTS, pidfd_getfd) takes out the sockets of its robot,
 // too. Sockets that are not here are treated as any other descriptor: sockets bound by calls that
@@ -27,7 +28,7 @@
 
 namespace tcs::shm {
 
-// Of robots, in the order of the scenario.
+// The numbers of robots, in the order of the scenario.
 inline constexpr std::uint32_t kNoRobot = 0;
 inline constexpr std::uint32_t kFirstRobot = 1;
 
@@ -67,9 +68,9 @@ struct LocalSockets {
   RobotByNumber by_name;    // NumberOfName
 };
 
-// 0 for an address that is no abstract name. Names of one hash are taken for one: the sockets of
-// two robots then belong to neither, and a send seems to reach a robot that it does not concern.
-// Both are safe.
+// The hash of an abstract name; 0 for any other address. Names with the same hash are taken for one
+// name: the sockets of two robots then belong to neither, and a send seems to reach a robot that it
+// does not concern. Both mistakes are safe.
 inline std::uint64_t HashOfName(const void* address, std::size_t size) {
   constexpr std::size_t kBegin = offsetof(sockaddr_un, sun_path);
   sa_family_t family = AF_UNSPEC;

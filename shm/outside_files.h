@@ -1,6 +1,6 @@
 // Files by which programs meet what is outside of the run: connected sockets whose peer is outside,
-// devices (GPUs, accelerators, cameras), and files that the scenario names. What comes by them
-// takes real time, and is to be seen at the virtual time that this real time stands for
+// devices (GPUs, accelerators, cameras), and files that the scenario names. Data that comes by such
+// a file takes real time, and is to be seen at the virtual time that this real time stands for
 // (coordinator/calls/outside_waits.h).
 //
 // Written by the coordinator, read by all clients at any time; behind the rest of the run's memory
@@ -14,15 +14,17 @@
 
 namespace tcs::shm {
 
-// What the thread says in args[0] of NotificationKind::kOutside; args[1] is a descriptor.
+// The event that the thread names in args[0] of NotificationKind::kOutside; args[1] is a
+// descriptor.
 enum class OutsideEvent : std::int64_t {
-  kConnects = 1,  // it has been connected, or is being connected; or it is a device, and open now;
-                  // args[2]: the TSC before that; args[3]: 1: it is still being connected
-  kAsks = 2,     // the thread has sent by it; args[2]: the TSC before it did; args[3]: 1: there was
-                 // something to be taken then
-  kLooks = 3,    // it is about to look whether something is there: go on as with kRead
-  kTakes = 4,    // it has taken what was there
-  kCloses = 5,   // it is about to close it
+  kConnects = 1,  // the file has been connected, or is being connected; or it is a device, and open
+                  // now; args[2]: the TSC before that; args[3]: 1: the file is still being
+                  // connected
+  kAsks = 2,     // the thread has sent by the file; args[2]: the TSC before that; args[3]: 1: there
+                 // was something to be taken then
+  kLooks = 3,    // the thread is about to look whether something is there: go on as with kRead
+  kTakes = 4,    // the thread has taken what was there
+  kCloses = 5,   // the thread is about to close the file
   kReturns = 6,  // an ioctl that waits for such a file is over; args[1]: -1
 };
 
@@ -30,8 +32,9 @@ struct OutsideFiles {
   static constexpr std::uint32_t kPlaces = 128;
   struct Place {
     std::atomic<std::uint64_t> key;  // 0: free
-    // From then on what has come is to be seen, on the robots' clock; kOutsideUnknown: that is not
-    // known yet; kOutsideRests: nothing is waited for, and whoever looks begins to; 0: at once.
+    // The time on the robots' clock from which data that has come is to be seen; kOutsideUnknown:
+    // the time is not known yet; kOutsideRests: no data is waited for, and a thread that looks
+    // begins to wait; 0: at once.
     std::atomic<std::int64_t> seen_from_ns;
     // 1: a connection that is being made, which shows by that there is room to write.
     std::atomic<std::uint32_t> is_connecting;
@@ -48,8 +51,8 @@ inline constexpr std::uint64_t kOutsideSocket = std::uint64_t{1} << 63;
 inline constexpr std::uint64_t kOutsideDevice = std::uint64_t{1} << 62;
 inline constexpr std::uint64_t kOutsideKeyMask = kOutsideDevice - 1;
 
-// Never 0. Every wait for such a file is for what is outside, but for sockets: these count once the
-// program has sent something by them.
+// Never 0. Every wait for such a file is for what is outside, but for sockets: a socket counts once
+// the program has sent something by it.
 inline std::uint64_t OutsideKeyOf(const struct stat& status) {
   if (S_ISSOCK(status.st_mode)) return kOutsideSocket | (status.st_ino & kOutsideKeyMask);
   if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)) {
@@ -61,14 +64,14 @@ inline std::uint64_t OutsideKeyOf(const struct stat& status) {
   return mixed != 0 ? mixed : kOutsideKeyMask;
 }
 
-// Not a file's: what the thread, by its number on the host, waits for within a call.
+// The key of no file, but of what the thread waits for within a call, by its number on the host.
 inline constexpr std::uint64_t kOutsideCall = kOutsideSocket | kOutsideDevice;
 inline std::uint64_t OutsideCallKey(std::int32_t tid) {
   return kOutsideCall | static_cast<std::uint32_t>(tid);
 }
 inline bool IsOutsideCall(std::uint64_t key) { return (key & kOutsideCall) == kOutsideCall; }
 
-// Of the file; null: it is not among them.
+// The place of the file; null: the file has none.
 template <class Files>
 auto* OutsidePlaceOf(Files& files, std::uint64_t key) {
   const std::uint32_t used = files.used.load(std::memory_order_acquire);

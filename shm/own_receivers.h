@@ -21,8 +21,8 @@
 
 namespace tcs::shm {
 
-// What tells an address from others of its kind, and zeros behind it; of no bytes where there is no
-// receiver, or the kind of address is not known here.
+// The bytes that tell an address from others of its kind, and zeros behind them; no bytes where
+// there is no receiver, or the kind of address is not known here.
 struct ReceiverAddress {
   std::uint16_t size;
   unsigned char bytes[110];
@@ -31,17 +31,17 @@ static_assert(sizeof(ReceiverAddress) == 112);
 static_assert(sizeof(sockaddr_un) <= sizeof(ReceiverAddress::bytes));
 
 struct OwnReceivers {
-  static constexpr std::uint32_t kMost = 1024;  // of others writes are held
+  static constexpr std::uint32_t kMost = 1024;  // writes to further receivers are held
   std::uint32_t count;
   std::uint32_t reserved;
   // The network namespace that all of them are in, as SO_NETNS_COOKIE has it. From sockets of this
-  // namespace they take datagrams in command rings, too (command_ring.h); 0: from none.
+  // namespace the receivers take datagrams in command rings, too (command_ring.h); 0: from none.
   std::uint64_t network;
   ReceiverAddress addresses[kMost];  // in order
 };
 static_assert(sizeof(OwnReceivers) == 114704);
 
-// `address` has as many bytes.
+// `address` has `size` bytes.
 inline ReceiverAddress AddressOf(const void* address, std::size_t size) {
   ReceiverAddress of{};
   sa_family_t family = AF_UNSPEC;
@@ -70,7 +70,7 @@ inline bool IsBefore(const ReceiverAddress& a, const ReceiverAddress& b) {
 
 inline constexpr int kNoReceiver = -1;
 
-// The place of the one with the address, or kNoReceiver.
+// The place of the receiver with the address, or kNoReceiver.
 inline int PlaceAmong(const OwnReceivers& receivers, const ReceiverAddress& address) {
   if (address.size == 0) return kNoReceiver;
   const ReceiverAddress* end = receivers.addresses + std::min(receivers.count, OwnReceivers::kMost);
@@ -86,7 +86,7 @@ inline bool HasFile(const ReceiverAddress& address) {
   return family == AF_UNIX && address.bytes[offsetof(sockaddr_un, sun_path)] != 0;
 }
 
-// All that is in the run's memory.
+// The whole of the run's memory.
 struct PublishedRun {
   RunMemory run;
   OwnReceivers own_receivers;

@@ -1,7 +1,8 @@
 // The kinds of time that do not mix, beside the world's (VirtualTime) and the host's (HostTime) of
-// virtual_time.h, and how one is made of another. Only what is here does that by itself; else
-// ProgramClock does (coordinator/tasks/program_clock.h), which knows by what a program's clock is
-// ahead, and MeteredThread (coordinator/host/meter.h), which knows how fast a thread's computer is.
+// virtual_time.h, and how one is made of another. Only the functions here do that by themselves;
+// else ProgramClock does (coordinator/tasks/program_clock.h), which knows by what a program's clock
+// is ahead, and MeteredThread (coordinator/host/meter.h), which knows how fast a thread's computer
+// is.
 //
 // All functions are constexpr, allocate nothing and are async-signal-safe.
 #pragma once
@@ -12,13 +13,13 @@
 
 namespace tcs {
 
-// What one program's clock shows, from the run's start: its robot's time, but under --sync callback
-// ahead of it. Virtual durations pass on it.
+// The time that one program's clock shows, from the run's start: its robot's time, but under --sync
+// callback ahead of it. Virtual durations pass on that clock.
 struct ProgramTimeTag;
 using ProgramTime = Instant<ProgramTimeTag>;
 
-// The numbers that shared memory, system calls and files have: whose time they are, nobody but the
-// reader knows.
+// The numbers that shared memory, system calls and files have: only the reader knows whose time
+// they are.
 constexpr VirtualTime RobotTime(std::int64_t ns) { return VirtualTime::FromNanoseconds(ns); }
 constexpr ProgramTime OwnTime(std::int64_t ns) { return ProgramTime::FromNanoseconds(ns); }
 constexpr VirtualDuration VirtualNs(std::int64_t ns) { return VirtualDuration::Nanoseconds(ns); }
@@ -34,8 +35,8 @@ constexpr VirtualDuration PassedBetween(ProgramTime from, ProgramTime to) {
   return VirtualNs((to - from).ns());
 }
 
-// What a program's clock shows when its robot's shows that, and the other way round; `lead`: by
-// what it is ahead. Never stays so.
+// The time that a program's clock shows when its robot's clock shows `robot`, and the other way
+// round; `lead`: how far the program's clock is ahead. Never stays Never.
 constexpr ProgramTime OwnTimeOf(VirtualTime robot, VirtualDuration lead) {
   return OwnTime((robot + lead).ns());
 }
@@ -43,7 +44,7 @@ constexpr VirtualTime RobotTimeOf(ProgramTime own, VirtualDuration lead) {
   return RobotTime((own - lead).ns());
 }
 
-// A sum that may be past the end of all time, and is never then.
+// A sum; it is Never where it is past the end of all time.
 constexpr VirtualTime AtMostNever(VirtualTime from, VirtualDuration passes) {
   std::int64_t sum = 0;
   const bool is_past = __builtin_add_overflow(from.ns(), passes.ns(), &sum);

@@ -1,5 +1,5 @@
 // Times as programs give and get them, in ns; and sums of times that stay at the end of all time
-// (kNeverNs) instead of overflowing. Nothing here allocates; all is async-signal-safe.
+// (kNeverNs) instead of overflowing. Nothing here allocates; every function is async-signal-safe.
 #pragma once
 
 #include <sys/time.h>
@@ -51,8 +51,8 @@ constexpr timeval ToTimeval(std::int64_t ns) {
 }
 constexpr timeval RoundUpToTimeval(std::int64_t ns) { return ToTimeval(AddSaturated(ns, 999)); }
 
-// What adjtimex says of a clock that shows that date, and that nothing disciplines; the rest of
-// `state` is the kernel's.
+// Writes into `state` what adjtimex says of a clock that shows the date `date_ns`, and that nothing
+// disciplines; the rest of `state` is the kernel's.
 inline void ShowUndisciplined(std::int64_t date_ns, timex* state) {
   const timespec date = ToTimespec(date_ns);
   state->time =
@@ -60,7 +60,7 @@ inline void ShowUndisciplined(std::int64_t date_ns, timex* state) {
   state->freq = state->offset = 0;
 }
 
-// As the kernel has it of what it is given.
+// True where the kernel takes such a value for valid.
 constexpr bool IsValid(const timespec& t) {
   return t.tv_sec >= 0 && t.tv_nsec >= 0 && t.tv_nsec < kNsPerSecond;
 }
@@ -72,13 +72,13 @@ constexpr bool IsValid(const itimerspec& t) {
 }
 constexpr bool IsValid(const itimerval& t) { return IsValid(t.it_value) && IsValid(t.it_interval); }
 
-// Of poll and its like: negative for ever.
+// A timeout of poll and its like; negative: for ever.
 constexpr std::int64_t MillisecondsToNs(int ms) {
   return ms < 0 ? -1 : std::int64_t{ms} * 1'000'000;
 }
 
-// When a timer that is set to `value_ns` runs out first, on its clock, which shows `now_ns`; 0: it
-// is not armed. Absolute values are of a clock that shows `offset_ns` more.
+// When a timer that is set to `value_ns` runs out first, on its clock, which shows `now_ns`; 0: the
+// timer is not armed. Absolute values are of a clock that shows `offset_ns` more.
 constexpr std::int64_t FirstExpiry(std::int64_t value_ns, bool is_absolute, std::int64_t now_ns,
                                    std::int64_t offset_ns) {
   if (value_ns == 0) return 0;
@@ -87,13 +87,15 @@ constexpr std::int64_t FirstExpiry(std::int64_t value_ns, bool is_absolute, std:
   return first_ns > 0 ? first_ns : 1;  // long past, but armed
 }
 
-// Until it runs out next (0: it is not armed), as it is read: never 0 while it is armed.
+// The time until a timer runs out next, at `next_ns` (0: the timer is not armed), as programs read
+// it: never 0 while the timer is armed.
 constexpr std::int64_t TimeLeft(std::int64_t next_ns, std::int64_t now_ns) {
   if (next_ns == 0) return 0;
   return next_ns > now_ns ? next_ns - now_ns : 1;
 }
 
-// What alarm returns of such a time left, rounded as the kernel does: never 0 while it was armed.
+// The seconds that alarm returns for such a time left, rounded as the kernel does: never 0 while
+// the timer was armed.
 constexpr std::int64_t AlarmSeconds(const timeval& left) {
   const bool up = left.tv_usec >= 500'000 || (left.tv_sec == 0 && left.tv_usec > 0);
   return left.tv_sec + (up ? 1 : 0);

@@ -1,5 +1,5 @@
 // The time-stamp counter, as the shim reads it: in an instruction. Where the shim's sources are
-// built for the simulated host it is that one's.
+// built for the simulated host, the counter is that host's.
 #pragma once
 
 #include <x86gprintrin.h>

@@ -14,7 +14,7 @@ struct WorkCounts {
   std::uint64_t calls;  // that the shim, or the trap, has intercepted
   std::uint64_t locks;  // an allocation counts as kLocksPerAllocation
 
-  // Whole ones.
+  // Whole allocations.
   std::uint64_t allocations() const { return locks / kLocksPerAllocation; }
 };
 static_assert(sizeof(WorkCounts) == 16);

@@ -13,7 +13,7 @@ class Wind {
  public:
   explicit Wind(const WindSpec& spec);
 
-  // The velocity `after_s` from `t` on.
+  // The wind's velocity `after_s` from `t` on.
   std::array<double, 3> At(VirtualTime t, double after_s) const;
 
  private:
@@ -23,7 +23,7 @@ class Wind {
   };
   const std::array<double, 3> mean_mps_;
   double amplitude_mps_ = 0;
-  std::vector<Tone> tones_;  // that the gusts are the sum of
+  std::vector<Tone> tones_;  // the gusts are their sum
 };
 
 // How fast the gusts' fastest tone goes round; 0 without gusts. Error control has to see it.

@@ -12,7 +12,7 @@
 namespace tcs {
 namespace {
 
-// As many as an engine evaluates side by side.
+// As many steps as an engine evaluates side by side.
 constexpr std::size_t kStepsAtOnce = 32;
 
 }  // namespace
@@ -70,8 +70,8 @@ void BodyIslands::Read(VirtualTime t, VirtualTime now, std::span<const int> bodi
   }
 }
 
-// Takes all steps that lead to `t` of those in `moving_`: the next one of each, until no one needs
-// any more.
+// Takes all steps that lead to `t` of the islands in `moving_`: the next step of each island, until
+// none needs any more.
 void BodyIslands::Reach(VirtualTime t, VirtualTime now) {
   std::sort(moving_.begin(), moving_.end());
   moving_.erase(std::unique(moving_.begin(), moving_.end()), moving_.end());

@@ -20,11 +20,12 @@ struct ShapeContact {
   std::array<double, 3> force_n{};  // on the first
 };
 
-// Appends those that push, each the way round that ContactForce has it.
+// Appends the contacts that push, each the way round that ContactForce has it.
 void AppendForces(const Forest& forest, std::span<const ShapeContact> found,
                   std::vector<ContactForce>* contacts);
 
-// Into the order of Dynamics::ReadContacts. Contacts of the same two things stay as they are.
+// Sorts contacts into the order of Dynamics::ReadContacts. Contacts of the same two things stay as
+// they are.
 void SortForces(std::vector<ContactForce>* contacts);
 
 }  // namespace tcs

@@ -1,24 +1,24 @@
-// The engine-neutral interface to the physics: where bodies are at a time, given what was commanded
-// until then.
+// The engine-neutral interface to the physics: where bodies are at a time, given the commands until
+// then.
 //
 // Frames and units (REP-103): SI units, right-handed, x forward, y left, z up; quaternions x y z w.
 // Positions, orientations, velocities and wrenches are expressed in the world frame unless they say
 // otherwise; a body's position is its centre of mass. Ownership: the implementation owns the
 // engine; values are copied in and out. Not thread-safe: one thread, the coordinator's, calls it.
 //
-// Lazy: time is a number, which costs nothing to advance. Bodies are integrated when somebody reads
-// them, each island (bodies that can touch or pull each other) by itself.
+// Lazy: time is a number, which costs nothing to advance. Bodies are integrated when they are read,
+// each island (bodies that can touch or pull each other) by itself.
 //
 // Determinism: a body's motion is a function of the world, of the commands to the bodies of its
-// island, and of the times of those that changed something. It does not depend on how far time was
-// advanced in one go, on what was read and when, on the order of calls, on other islands, nor on
-// how much had to be taken back: the same commands give bitwise the same states (same build, same
-// kind of processor).
+// island, and of the times of the commands that changed something. The motion does not depend on
+// how far time was advanced in one go, on what was read and when, on the order of calls, on other
+// islands, nor on how much had to be taken back: the same commands give bitwise the same states
+// (same build, same kind of processor).
 //
 // Errors: a violated precondition is a bug of ours and aborts. A world or a wrench without physical
 // meaning, or an integration that cannot be completed, throws DynamicsError with one sentence. A
 // call that throws has changed nothing. An integration is attempted again by the next Read, and
-// succeeds where a command has come in between that keeps the body out of it.
+// succeeds where a command has come in between that keeps the body out of the failure.
 #pragma once
 
 #include <array>
@@ -45,22 +45,23 @@ struct BodyState {
   std::array<double, 3> angular_velocity_radps{};
 };
 
-// What a command makes act on a body.
+// The force and the torque that a command makes act on a body.
 struct Wrench {
   std::array<double, 3> force_n{};  // at the centre of mass
   std::array<double, 3> torque_nm{};
   // Along the body's axes, and turning with them while it acts; else along the world's.
   bool in_body_frame = false;
-  // A time constant: what acts goes from what acted before to this by w' = (this - w) / lag. 0: it
-  // acts at once.
+  // A time constant: the acting wrench w goes from the wrench before to this one, by
+  // w' = (this - w) / lag. 0: this one acts at once.
   VirtualDuration lag{};
 
   bool operator==(const Wrench&) const = default;
 };
 
-// What drives a joint that has one coordinate: effort + stiffness * (position - its position) +
-// damping * (velocity - its velocity), and no more than the joint's limit of effort either way. N m
-// and radians, or N and metres. A servo is one of these, evaluated as often as the physics are.
+// The drive of a joint that has one coordinate: effort + stiffness * (position - the joint's
+// position) + damping * (velocity - the joint's velocity), and no more than the joint's limit of
+// effort either way. N m and radians, or N and metres. A servo is such a drive, evaluated as often
+// as the physics are.
 struct JointDrive {
   double effort = 0;
   double stiffness = 0;
@@ -74,10 +75,10 @@ struct JointDrive {
 struct JointState {
   double position = 0;
   double velocity = 0;
-  double effort = 0;  // what its drive gives
+  double effort = 0;  // given by the joint's drive
 };
 
-// Of a link's frame, in the world.
+// The state of a link's frame, in the world.
 struct LinkState {
   Pose pose;
   std::array<double, 3> linear_velocity_mps{};  // of the frame's origin
@@ -85,22 +86,23 @@ struct LinkState {
 };
 
 // A point where two things touch, and what they do to each other there, in the world's frame. A
-// contact stands in a list once: what `second` feels is the opposite force at the same point.
+// contact stands in a list once: `second` feels the opposite force at the same point.
 struct ContactForce {
   int first = 0;  // the link that the force acts on
-  // The link that it is the force of, or the fixture (index into WorldSpec::fixtures); the other
-  // one of the two is -1. What is fixed to the world is never `first`, unless both are; of two
-  // links that move, or of two that do not, `first` has the lower number.
+  // The link that exerts the force, or the fixture (index into WorldSpec::fixtures); the other one
+  // of the two is -1. A link that is fixed to the world is never `first`, unless both things are
+  // fixed; of two links that move, or of two that do not, `first` has the lower number.
   int second = -1, fixture = -1;
   std::array<double, 3> point_m{};
   std::array<double, 3> normal{};   // of unit length, from the second towards the first
   std::array<double, 3> force_n{};  // along the normal, and friction across it
 };
 
-// Along which axes a wrench on a link is given; those of the link turn with it while it acts.
+// The axes along which a wrench on a link is given; the link's axes turn with the link while the
+// wrench acts.
 enum class WrenchFrame { kWorld, kLink };
 
-// What the air does to a body that moves through it, whichever way the body is turned: the force
+// The drag of the air on a body that moves through it, whichever way the body is turned: the force
 // -(linear + quadratic |v|) v, v being the velocity relative to the wind; the torque of the same
 // form against the angular velocity.
 struct DragSpec {
@@ -120,11 +122,11 @@ struct BodySpec {
   DragSpec drag;
 };
 
-// How the air moves, everywhere alike.
+// The motion of the air, everywhere alike.
 struct WindSpec {
   std::array<double, 3> mean_mps{};
-  // Gusts on top of it: on each axis of this standard deviation, and correlated over about this
-  // time. They are a function of time and the seed.
+  // Gusts on top of the mean: on each axis of this standard deviation, and correlated over about
+  // this time. The gusts are a function of time and the seed.
   double gusts_mps = 0;
   VirtualDuration gust_time = VirtualDuration::Seconds(1);
   std::uint64_t seed = 1;
@@ -145,7 +147,7 @@ enum class EngineKind {
   kMujoco,
 };
 
-// Simbody's.
+// Simbody's integrators.
 enum class IntegratorKind {
   kRungeKutta3,
   kRungeKuttaMerson,
@@ -158,41 +160,41 @@ enum class IntegratorKind {
 struct IntegratorSpec {
   EngineKind engine = EngineKind::kSimbody;
   IntegratorKind kind = IntegratorKind::kRungeKutta3;  // Simbody alone has a choice
-  // Steps of this length, counted from the last command that changed something. 0: what the engine
-  // does by itself: Simbody controls its error by `accuracy`, ODE and MuJoCo take steps of 1 ms.
-  // Between the ends of steps of a set length the state is what a step shortened to end there
-  // gives; between those of steps that the engine chooses, a cubic through both ends and their
+  // Steps of this length, counted from the last command that changed something. 0: the engine's own
+  // steps: Simbody controls its error by `accuracy`, ODE and MuJoCo take steps of 1 ms. Between the
+  // ends of steps of a set length the state is what a step shortened to end there gives; between
+  // the ends of steps that the engine chooses, the state is a cubic through both ends and their
   // derivatives.
   VirtualDuration fixed_step{};
   double accuracy = 1e-5;  // relative error of one of Simbody's steps, between 0 and 1
 
-  // For engines that know no other steps than set ones.
+  // For engines that know no other steps than steps of a set length.
   VirtualDuration StepOr(VirtualDuration otherwise) const {
     return fixed_step > VirtualDuration{} ? fixed_step : otherwise;
   }
 };
 
-// Gazebo's, too.
+// Gazebo has the same step.
 inline constexpr VirtualDuration kOdeStep = VirtualDuration::Milliseconds(1);
 inline constexpr VirtualDuration kMujocoStep = VirtualDuration::Milliseconds(1);
 
 struct WorldSpec {
   std::vector<BodySpec> bodies;
-  // What has joints, or touches something: not every engine takes them (engines.h).
+  // Models have joints, or touch something: not every engine takes them (engines.h).
   std::vector<RobotModel> models;
-  // What the models stand on and run into: the floor, walls. In the world's frame; they do not
-  // move. Free bodies touch nothing.
+  // The things that the models stand on and run into: the floor, walls. They are in the world's
+  // frame and do not move. Free bodies touch nothing.
   std::vector<Shape> fixtures;
   std::array<double, 3> gravity_mps2{};
   bool has_region = false;
   RegionSpec region;
   WindSpec wind;  // for bodies with drag
   IntegratorSpec integrator;
-  // Bodies (by index) that are integrated as one system. Others are islands of one body each: free
-  // bodies cannot touch or pull each other.
+  // Bodies (by index) that are integrated as one system. Other bodies are islands of one body each:
+  // free bodies cannot touch or pull each other.
   std::vector<std::vector<int>> together;
-  // Models (by index) that are one system from the start on, and stay one. Others that can touch
-  // each other are one for as long as they are near each other.
+  // Models (by index) that are one system from the start on, and stay one. Other models that can
+  // touch each other are one system for as long as they are near each other.
   std::vector<std::vector<int>> models_together;
 };
 
@@ -201,7 +203,7 @@ class DynamicsError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Somebody asked for that (Dynamics::InterruptBy).
+// An interruption was asked for (Dynamics::InterruptBy).
 class DynamicsInterrupted : public DynamicsError {
  public:
   DynamicsInterrupted() : DynamicsError("the integration was interrupted") {}
@@ -215,19 +217,19 @@ class Dynamics {
     virtual ~Checkpoint() = default;
   };
 
-  // What was done since the beginning, that included which was taken back.
+  // The work since the beginning, including the work that was taken back.
   struct Work {
     std::int64_t steps = 0;       // of the engine
     std::int64_t changes = 0;     // steps that began with other wrenches than the one before ended
     std::int64_t taken_back = 0;  // commands that changed what had been integrated already
-    std::int64_t regrouped = 0;   // times that it was looked anew which models are near each other
+    std::int64_t regrouped = 0;   // times that models near each other were looked for anew
     std::int64_t helped = 0;      // pieces of work that were done on other processors
   };
 
   virtual ~Dynamics() = default;
 
   // Islands may be integrated on these processors of the host, too, beside the caller's: threads of
-  // this process help where it is worth waking them. It changes no state, to the bit.
+  // this process help where it is worth waking them. Their help changes no state, to the bit.
   virtual void UseProcessors(std::span<const int> cpus) = 0;
 
   // Looks at `asked` now and then while it integrates, and throws DynamicsInterrupted where that
@@ -240,35 +242,36 @@ class Dynamics {
 
   // No command for an earlier time comes any more, nor is an earlier state read.
   virtual VirtualTime Now() const = 0;
-  // To `t` >= Now(). Integrates nothing.
+  // Advances to `t` >= Now(). Integrates nothing.
   virtual void AdvanceTo(VirtualTime t) = 0;
 
   // From `t` >= Now() on, `wrench` acts on body `body` (index into WorldSpec::bodies) until a later
   // command replaces it. Commands for one instant apply in the order they were given; the last one
-  // stays. What was read for later times was read as if this command had not been given. One that
-  // leaves things as they are costs nothing.
+  // stays. States that were read for later times were read as if this command had not been given. A
+  // command that leaves things as they are costs nothing.
   virtual void Apply(int body, const Wrench& wrench, VirtualTime t) = 0;
 
   // The states of `bodies` at `t` >= Now(), given the commands so far; `states` has as many
   // elements. A command for `t` itself does not change them. Reading many at once is faster than
   // one by one.
   virtual void Read(VirtualTime t, std::span<const int> bodies, std::span<BodyState> states) = 0;
-  // The state of one at Now().
+  // The state of one body at Now().
   BodyState Read(int body) {
     BodyState state;
     Read(Now(), {&body, 1}, {&state, 1});
     return state;
   }
 
-  // The models' links, joints and rotors by index: those of the first model in its own order, then
-  // those of the next. Names are resolved once; none: there is no such one.
+  // The models' links, joints and rotors by index: the first model's in its own order, then the
+  // next model's. Names are resolved once; none: there is no such part.
   virtual std::optional<int> FindLink(std::string_view model, std::string_view link) const = 0;
   virtual std::optional<int> FindJoint(std::string_view model, std::string_view joint) const = 0;
   virtual std::optional<int> FindRotor(std::string_view model, std::string_view rotor) const = 0;
 
-  // As Apply, for links, joints and rotors. A wrench on a link acts at the origin of its frame;
-  // those along the world's axes and along the link's act beside each other. A joint that is driven
-  // has one coordinate and mimics none. A rotor's speed is within what the rotor can do.
+  // As Apply, for links, joints and rotors. A wrench on a link acts at the origin of its frame; a
+  // wrench along the world's axes and a wrench along the link's axes act beside each other. A joint
+  // that is driven has one coordinate and mimics none. A rotor's speed is within what the rotor can
+  // do.
   virtual void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t) = 0;
   virtual void Drive(int joint, const JointDrive& drive, VirtualTime t) = 0;
   virtual void Spin(int rotor, double speed_radps, VirtualTime t) = 0;
@@ -279,19 +282,20 @@ class Dynamics {
   virtual void ReadJoints(VirtualTime t, std::span<const int> joints,
                           std::span<JointState> states) = 0;
 
-  // The contacts of all models at `t` >= Now(), of those alone that push: in the order of their
+  // The contacts of all models at `t` >= Now(), only contacts that push: in the order of their
   // first and then of their second things, fixtures after links. A force is that of the engine's
   // step which ends at `t` or is under way then, constant over it: so it is what changed the
   // momenta that ReadLinks tells of at `t`, by commands until then. A blow counts in the steps that
   // it takes (of 1 ms, by default). At the run's start no step has been taken, and nothing pushes.
   // Free bodies touch nothing, on any engine; the walls of a region are no contacts.
   //
-  // As Read, it changes nothing. It costs each island that may touch something about a step.
+  // As Read, ReadContacts changes nothing. The call costs each island that may touch something
+  // about a step.
   virtual void ReadContacts(VirtualTime t, std::vector<ContactForce>* contacts) = 0;
 
-  // A checkpoint holds what a run goes on from: after Restore the same calls compute bitwise what
-  // they computed in the run that was saved. It costs less than a step. With `reuse`, an earlier
-  // checkpoint of this Dynamics, its memory is used again.
+  // A checkpoint holds the state that a run goes on from: after Restore the same calls compute
+  // bitwise what they computed in the run that was saved. A checkpoint costs less than a step. With
+  // `reuse`, an earlier checkpoint of this Dynamics, its memory is used again.
   virtual std::unique_ptr<Checkpoint> Save(std::unique_ptr<Checkpoint> reuse) = 0;
   std::unique_ptr<Checkpoint> Save() { return Save(nullptr); }
   virtual void Restore(const Checkpoint& checkpoint) = 0;
@@ -299,7 +303,8 @@ class Dynamics {
   virtual const Work& work() const = 0;
 };
 
-// On the engine that world.integrator names. Throws DynamicsError for a world that it refuses.
+// The dynamics on the engine that world.integrator names. Throws DynamicsError for a world that the
+// engine refuses.
 std::unique_ptr<Dynamics> MakeDynamics(const WorldSpec& world);
 
 }  // namespace tcs

@@ -1,5 +1,5 @@
-// The engines that there are, and what each can do: who asks for something of an engine looks here
-// whether it has it, and knows no engine by name. make_engine.cc makes them.
+// The engines that there are, and what each can do. Code that asks for something of an engine looks
+// here whether the engine has it, and knows no engine by name. make_engine.cc makes the engines.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What engines of models have in common: a forest of models for each island, and the engine's own
+// The common part of engines of models: a forest of models for each island, and the engine's own
 // system that is built from it.
 #pragma once
 

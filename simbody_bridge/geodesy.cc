@@ -30,7 +30,7 @@ Geodetic ToGeodetic(const Geodetic& origin, const std::array<double, 3>& enu_m) 
   const double z =
       (NormalM(sin_lat) * (1 - kSquare) + origin.altitude_m + up) * sin_lat + north * cos_lat;
   const double from_axis = std::hypot(x, y);
-  // Bowring's: each round gains some three digits near the ground.
+  // Bowring's method: each round gains some three digits near the ground.
   double latitude = std::atan2(z, from_axis * (1 - kSquare));
   for (int round = 0; round < 8; ++round) {
     const double sine = std::sin(latitude);

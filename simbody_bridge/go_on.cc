@@ -7,7 +7,7 @@
 namespace tcs {
 namespace {
 
-// Where `group` has what is at a place of another one; none if that is about another model.
+// The place in `group` of what is at `place` of `other`; none if `group` does not have that model.
 std::optional<int> PlaceIn(const ModelGroup& group, const ModelGroup& other, int place) {
   const auto [member, own] = other.Locate(place);
   const int model = other.models()[member];
@@ -15,7 +15,7 @@ std::optional<int> PlaceIn(const ModelGroup& group, const ModelGroup& other, int
   return group.PlaceIn(group.MemberOf(model), own);
 }
 
-// Whether any model goes on from there.
+// Copies the states of the models of `group` that go on from `past`. Returns whether there is any.
 bool CopyStates(ModelEngine& engine, const ModelGroup& group, const GroupPast& past,
                 std::span<double> into) {
   bool has_any = false;

@@ -16,7 +16,7 @@ struct GroupPast {
   std::vector<Island::Command> commands;
 };
 
-// What the island of a group begins with.
+// The start of a group's island.
 struct GroupFuture {
   Island::Node start;
   std::vector<Island::Command> commands;  // from its start on

@@ -10,7 +10,7 @@
 namespace tcs {
 namespace {
 
-// Those of `together`, of which no index is in two, and the others of `count` alone.
+// The groups of `together`, of which no index is in two, and each other index below `count` alone.
 std::vector<std::vector<int>> Grouped(const std::vector<std::vector<int>>& together,
                                       std::size_t count, std::string_view what) {
   std::vector<std::vector<int>> islands = together;

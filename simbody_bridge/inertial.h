@@ -1,5 +1,5 @@
-// What a body feels: an accelerometer and a gyroscope at its centre of mass, their axes the body's.
-// Computed from its motion, whatever engine moves it.
+// The inertial sensor of a body: an accelerometer and a gyroscope at the body's centre of mass,
+// along the body's axes. Readings are computed from the body's motion, whatever engine moves it.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace tcs {
 
 struct InertialReading {
   std::array<double, 3> angular_rate_radps{};  // the body's frame
-  // The same frame. Acceleration less gravity (none in free fall), meant over the time since the
-  // reading before; the first has none.
+  // In the body's frame, too: acceleration less gravity (0 in free fall), the mean over the time
+  // since the reading before; the first reading has none.
   std::optional<std::array<double, 3>> proper_acceleration_mps2;
 };
 

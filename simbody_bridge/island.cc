@@ -9,8 +9,8 @@
 namespace tcs {
 namespace {
 
-// The first step after a change: where changes come at a rate, the next one most likely ends it,
-// and what lies beyond would be thrown away.
+// Limits of the first step after a change: where changes come at a rate, the next change most
+// likely ends the step, and the part beyond would be thrown away.
 constexpr std::int64_t kIntervalsAhead = 2;
 constexpr VirtualDuration kLeastAhead = VirtualDuration::Milliseconds(1);
 
@@ -51,7 +51,7 @@ Island::Island(int index, Node start, std::vector<Command> commands, IslandEngin
       commands_(std::move(commands)),
       frontier_(std::move(start)) {}
 
-// What acts on the body after all commands for `t` and before.
+// The wrench that acts on the body after all commands for `t` and before.
 const Wrench& Island::ActingAfter(VirtualTime t, int place) const {
   auto command = std::upper_bound(commands_.begin(), commands_.end(), t, IsEarlier);
   while (command != commands_.begin()) {
@@ -64,7 +64,7 @@ const Wrench& Island::ActingAfter(VirtualTime t, int place) const {
 void Island::Apply(int place, const Wrench& wrench, VirtualTime t) {
   Require(t >= Origin().at, "a command cannot act before what is settled");
   const bool changes = !(ActingAfter(t, place) == wrench);
-  // Kept even where it changes nothing: an earlier command may still come.
+  // The command is kept even where it changes nothing: an earlier command may still come.
   commands_.insert(std::upper_bound(commands_.begin(), commands_.end(), t, IsEarlier),
                    {t, place, wrench});
   if (changes && used_ > 0 && t <= legs_[used_ - 1].to) TakeBackTo(t);
@@ -141,7 +141,7 @@ void Island::Depart(const Node& start, VirtualDuration most, Leg* leg) {
   if (HasSettled(step)) step.remainders.clear();
 }
 
-// Where a new command lags, what acted until now fades.
+// Where a new command lags, the wrench that acted until now fades.
 void Island::LetLag(const Node& start, IslandStep* step) const {
   const std::size_t bodies = step->wrenches.size();
   for (std::size_t place = 0; place < bodies; ++place) {
@@ -164,7 +164,8 @@ void Island::LimitAfterChange(const Node& start, IslandStep* step) const {
     step->limit = std::min(step->limit, std::max(interval * kIntervalsAhead, kLeastAhead));
   }
   for (std::size_t place = 0; place < step->remainders.size(); ++place) {
-    // Error control sees what fades when the step is not many times longer than that takes.
+    // Error control sees a fading wrench when the step is not many times longer than the fading
+    // takes.
     if (step->remainders[place].since != start.at) continue;
     step->limit = std::min(step->limit, step->wrenches[place].lag);
   }
@@ -181,9 +182,9 @@ void Island::Took() {
   FindFrontier();
 }
 
-// When something changes between a leg's start and the end of its step; Never() if nothing does.
-// Until then what is commanded is what the step has: so only the commands of an instant matter, of
-// which the last one to a place stays.
+// The time of the first change between a leg's start and the end of its step; Never() if nothing
+// changes. Until then the commanded wrenches are those that the step has: so only the commands of
+// an instant matter, of which the last one to a place stays.
 VirtualTime Island::ChangeWithin(const Leg& leg) const {
   auto command = std::upper_bound(commands_.begin(), commands_.end(), leg.start.at, IsEarlier);
   while (command != commands_.end() && command->at <= leg.to) {
@@ -199,7 +200,7 @@ VirtualTime Island::ChangeWithin(const Leg& leg) const {
   return VirtualTime::Never();
 }
 
-// When it is; how the island is then is found when somebody needs it.
+// Finds the frontier's time; the island's state at that time is found when it is needed.
 void Island::FindFrontier() {
   const Leg& leg = legs_[used_ - 1];
   frontier_.at = std::min(leg.to, ChangeWithin(leg));
@@ -216,7 +217,7 @@ const std::vector<double>& Island::StateAtFrontier() {
   return frontier_.state;
 }
 
-// All but the state.
+// Fills in all of the node but the state.
 void Island::GoTo(const Leg& leg, VirtualTime t, Node* node) const {
   node->at = t;
   node->wrenches = leg.step.wrenches;
@@ -240,7 +241,7 @@ Island::Node Island::NodeAt(VirtualTime t) {
   return node;
 }
 
-// Valid until the leg is another one, or another state within it is asked for.
+// The result is valid until the leg is another one, or another state within it is asked for.
 const std::vector<double>& Island::StateOf(Leg& leg, VirtualTime t) {
   IslandStep& step = leg.step;
   const VirtualDuration after = t - leg.start.at;

@@ -1,4 +1,4 @@
-// Dynamics over islands: those of free bodies and those of models, which have an engine each.
+// Dynamics over islands: islands of free bodies and islands of models, which have an engine each.
 #include <utility>
 
 #include "simbody_bridge/body_islands.h"

@@ -1,6 +1,6 @@
-// Commands that lag, in closed form: from the command on, what acts is the command and, fading by
-// e^(-t / lag), the difference to what acted before it. So it is exact wherever the steps are, and
-// a function of the commands alone.
+// Commands that lag, in closed form: from the command on, the command acts and, fading by e^(-t /
+// lag), the difference to what acted before it. So the sum is exact wherever the steps are, and a
+// function of the commands alone.
 #pragma once
 
 #include "simbody_bridge/dynamics.h"
@@ -8,26 +8,27 @@
 
 namespace tcs {
 
-// What acted on a body when its command took effect, and fades if that lags.
+// The load that acted on a body when its command took effect, and that fades if the command lags.
 struct Remainder {
   VirtualTime since = VirtualTime::Never();  // of the command; never: there is nothing left
-  Load in_world, in_body;                    // along whose axes it acts
+  Load in_world, in_body;                    // the axes along which it acts
 };
 
-// Whether by `t` there is no more left of it than doubles tell apart. Of a command that does not
-// lag there never is.
+// Whether by `t` no more of the remainder is left than doubles tell apart. A command that does not
+// lag never has a remainder.
 bool HasSettled(const Wrench& command, const Remainder& remainder, VirtualTime t);
 
 // How much of the remainder still acts at `t`: 1 when the command takes effect, 0 when it has
 // settled.
 double ShareLeft(const Wrench& command, const Remainder& remainder, VirtualTime t);
-// The mean over the time from `t` to `seconds` later.
+// The mean of the share over the time from `t` to `seconds` later.
 double MeanShareLeft(const Wrench& command, const Remainder& remainder, VirtualTime t,
                      double seconds);
-// `after_s` later than a time at which `share` was left.
+// The share left `after_s` later than a time at which `share` was left.
 double ShareLeftAfter(const Wrench& command, double share, double after_s);
 
-// What acts of both, as the remainder of a command that takes effect at `t`.
+// The load that acts of the command and the remainder, as the remainder of a command that takes
+// effect at `t`.
 Remainder RemainderAt(const Wrench& command, const Remainder& remainder, VirtualTime t);
 
 }  // namespace tcs

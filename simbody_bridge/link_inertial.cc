@@ -12,8 +12,8 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-// What is constant along axes that turn by `turn_rad`, given its mean along the axes as they were
-// before that: the inverse of the left Jacobian of the rotation.
+// The vector that is constant along axes that turn by `turn_rad`, given its mean along the axes as
+// they were before the turn: the inverse of the left Jacobian of the rotation.
 Vector AlongTurningAxes(const Vector& turn_rad, const Vector& mean) {
   const double square =
       turn_rad[0] * turn_rad[0] + turn_rad[1] * turn_rad[1] + turn_rad[2] * turn_rad[2];

@@ -1,5 +1,5 @@
-// What an accelerometer and a gyroscope feel that are mounted on a link, along their own axes.
-// Computed from the link's motion, whatever engine moves it.
+// The readings of an accelerometer and a gyroscope that are mounted on a link, along their own
+// axes. They are computed from the link's motion, whatever engine moves it.
 #pragma once
 
 #include <array>

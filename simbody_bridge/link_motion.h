@@ -5,9 +5,9 @@
 
 namespace tcs {
 
-// The pose of what was `from` and is `to` so many `seconds` later, at the share `part` (0 to 1) of
-// that time: the position is a cubic through both ends and their velocities, the orientation turns
-// at a steady rate. Less than half a turn lies between the two.
+// The pose of a link that was `from` and is `to` so many `seconds` later, at the share `part` (0 to
+// 1) of that time: the position is a cubic through both ends and their velocities, the orientation
+// turns at a steady rate. Less than half a turn lies between the two.
 Pose PoseBetween(const LinkState& from, const LinkState& to, double seconds, double part);
 
 // How a frame moves that is fixed to a link, at `at` in the link's frame.

@@ -1,4 +1,4 @@
-// What acts on a body at an instant.
+// The force and the torque that act on a body at an instant.
 #pragma once
 
 #include <array>

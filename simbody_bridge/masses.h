@@ -1,4 +1,4 @@
-// What makes two islands of free bodies the same system.
+// The masses that make two islands of free bodies the same system.
 #pragma once
 
 #include <array>

@@ -1,11 +1,11 @@
-// What sensors of robots measure, as values: each transport makes its messages of them.
+// The measurements of robots' sensors, as values: each transport makes its messages of them.
 //
 // SI units. Frames are named as the scenario names them; a mounted sensor looks along the x axis of
-// its frame, with z up, as REP-103 has bodies. A distance that is farther than what a sensor
-// reaches is infinity, and one that is nearer minus infinity (REP-117).
+// its frame, with z up, as REP-103 has bodies. A distance beyond a sensor's reach is infinity, and
+// a distance before it is minus infinity (REP-117).
 //
-// A variance is that of each axis, none of which depends on another one, in the unit squared; 0
-// where nothing is known to be wrong. What is wrong with an orientation is a turn about its axes.
+// A variance is that of each axis, in the unit squared, and no axis depends on another one; 0 where
+// no error is known. The error of an orientation is a turn about its axes.
 #pragma once
 
 #include <array>
@@ -58,7 +58,7 @@ struct ScanMeasurement {
   std::vector<double> ranges_m;
 };
 
-// What rays in several layers have met, each seen from where the sensor was then.
+// The points that rays in several layers have met, each seen from where the sensor was then.
 struct CloudMeasurement {
   struct Point {
     std::array<double, 3> direction{};  // of unit length
@@ -79,7 +79,7 @@ struct RangeMeasurement {
   double range_variance = 0;
 };
 
-// How far ahead it is, along x, to what each pixel sees; rows from above, from the left.
+// The distance ahead, along x, to what each pixel sees; rows from above, from the left.
 struct DepthMeasurement {
   std::string frame;
   std::size_t width = 0, height = 0;
@@ -89,7 +89,7 @@ struct DepthMeasurement {
 struct GnssMeasurement {
   std::string frame;
   Geodetic origin;                // of the world
-  std::array<double, 3> enu_m{};  // from there, along the world's axes
+  std::array<double, 3> enu_m{};  // from `origin`, along the world's axes
   double position_variance = 0;
   Geodetic position() const { return ToGeodetic(origin, enu_m); }
 };

@@ -1,9 +1,9 @@
-// What an engine does for islands of models, beside taking their steps.
+// The work of an engine for islands of models, beside taking their steps.
 //
 // Links and joints are counted through the models of an island, in the order in which MakeEngine
 // was given them. The places of such an island: for each link a wrench along the world's axes and
 // one along the link's, both at the link's origin; then for each joint its drive; then for each
-// rotor its speed. What of them lags, and what rotors do to their links, is in model_loads.h.
+// rotor its speed. model_loads.h says which of these lag, and how rotors act on their links.
 #pragma once
 
 #include <memory>
@@ -33,7 +33,8 @@ inline JointDrive AsDrive(const Wrench& numbers) {
           .velocity = numbers.torque_nm[1]};
 }
 
-// Those among what acts on an island that has so many links.
+// The wrench on a link and the drive of a joint, among what acts on an island that has so many
+// links.
 inline const Wrench& WrenchOnLink(std::span<const Wrench> acting, std::size_t link,
                                   WrenchFrame frame) {
   return acting[static_cast<std::size_t>(PlaceOfLink(static_cast<int>(link), frame))];
@@ -44,7 +45,7 @@ inline JointDrive DriveOfJoint(std::span<const Wrench> acting, std::size_t links
       PlaceOfJoint(static_cast<int>(links), static_cast<int>(joint)))]);
 }
 
-// One that lags. Its effort is linear in these numbers, so that it fades as they do.
+// A drive that lags. Its effort is linear in these numbers, so that the effort fades as they do.
 inline Wrench AsNumbers(const JointDrive& drive, VirtualDuration lag) {
   Wrench numbers = AsNumbers(
       {.effort = drive.effort + drive.stiffness * drive.position + drive.damping * drive.velocity,
@@ -59,42 +60,44 @@ inline Wrench AsNumbers(double speed_radps, VirtualDuration lag) {
   return {.force_n = {speed_radps, 0, 0}, .lag = lag};
 }
 
-// What a drive gives at a position and a velocity, within the joint's limit.
+// The effort of a drive at a position and a velocity, within the joint's limit.
 double EffortOf(const JointDrive& drive, double limit, double position, double velocity);
 
-// Where a model is in the states of an island: its models are counted in their order there.
+// Where a model is in the states of an island: the island's models are counted in their order
+// there.
 struct ModelPlace {
   int island = 0, member = 0;
 };
 
 class ModelEngine : public IslandEngine {
  public:
-  // One more island, of these models, in addition to those that the engine was made with: its
-  // index. A model may be in many islands, each of which is one way to group it. They touch the
-  // static shapes of the models `bases`, too, as if these were the world's. Throws what the engine
-  // throws if it refuses it.
+  // Adds one more island, of these models, to those that the engine was made with, and returns its
+  // index. A model may be in many islands, each of which is one way to group it. The models touch
+  // the static shapes of the models `bases`, too, as if these were the world's. Throws what the
+  // engine throws if it refuses the island.
   virtual int AddIsland(const std::vector<int>& models, const std::vector<int>& bases) = 0;
-  // How the model is in the state of one island, as it would be in that of another one.
+  // Copies the model's part of the state of one island into the state of another one.
   virtual void CopyModel(const ModelPlace& from, std::span<const double> state,
                          const ModelPlace& to, std::span<double> into) const = 0;
 
-  // How links and joints are in a state of their island, at an instant at which `acting` acts.
-  // Joints have one coordinate, or they are fixed.
+  // The states of links and joints in a state of their island, at an instant at which `acting`
+  // acts. Joints have one coordinate, or they are fixed.
   virtual void ReadLinks(int island, std::span<const double> state, std::span<const int> links,
                          std::span<LinkState> read) = 0;
   virtual void ReadJoints(int island, std::span<const double> state, const Acting& acting,
                           std::span<const int> joints, std::span<JointState> read) = 0;
 
   // Appends the contacts that push in a step that was taken, as Dynamics has them, in an order that
-  // is a function of the step: those that lead to the state `after` its beginning, up to its end.
+  // is a function of the step: the contacts that lead to the state `after` the step's beginning, up
+  // to its end.
   virtual void ReadContacts(const IslandStep& step, VirtualDuration after,
                             std::vector<ContactForce>* contacts) = 0;
 };
 
-// The models of each island at least: those of world.models_together, and the others alone. Throws
-// DynamicsError where a model is named twice, or is none.
+// The models of each island at least: the groups of world.models_together, and each other model
+// alone. Throws DynamicsError where a model is named twice, or is none.
 std::vector<std::vector<int>> ModelUnitsOf(const WorldSpec& world);
-// Whether a model can run into others.
+// Whether a model can run into other models.
 bool CanMeet(const RobotModel& model);
 
 // The engine that world.integrator names. `world` has passed CheckWorld. Throws DynamicsError if

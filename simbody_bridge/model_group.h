@@ -21,7 +21,7 @@ class ModelGroup {
   const std::vector<int>& models() const { return models_; }
   int places() const { return PlaceOfRotor(links_, joints_, rotors_); }
   bool Has(int model) const { return std::binary_search(models_.begin(), models_.end(), model); }
-  // Which of the models it is.
+  // The place of `model` among the group's models.
   std::size_t MemberOf(int model) const;
 
   int LinkOf(std::size_t member, int link) const { return parts_[member].first_link + link; }
@@ -32,7 +32,8 @@ class ModelGroup {
 
   // Finds the balls that moving shapes are in, in a state of the island.
   void FindBalls(ModelEngine& engine, std::span<const double> state);
-  // Those of a member's shapes that move; of one that has none those of all, whom it goes with.
+  // The balls of a member's moving shapes; of a member without moving shapes the balls of all
+  // members, with which it goes.
   std::span<const MovingBall> BallsOf(std::size_t member) const {
     const Part& part = parts_[member];
     if (part.shapes == 0) return balls_;
@@ -50,7 +51,7 @@ class ModelGroup {
   int links_ = 0, joints_ = 0, rotors_ = 0;
   std::vector<Part> parts_;
   std::vector<int> shape_links_;     // links with moving shapes, by the island's count
-  std::vector<ShapeOnLink> shapes_;  // whose links count those
+  std::vector<ShapeOnLink> shapes_;  // links count shape_links_
   std::vector<LinkState> states_;    // memory of FindBalls
   std::vector<MovingBall> balls_;
 };

@@ -15,19 +15,19 @@
 namespace tcs {
 namespace {
 
-// Of steps that the engine chooses. Whoever would have to step shorter to stay in its zone gets
-// another one.
+// The shortest worthwhile step where the engine chooses steps. A model that would have to step
+// shorter to stay in its zone gets another zone.
 constexpr VirtualDuration kBrief = VirtualDuration::Milliseconds(1);
-// With so many steps in a row that are shorter than this a run comes nowhere: they take seconds of
-// real time for some milliseconds of virtual time.
+// With so many steps in a row that are shorter than this a run comes nowhere: the steps take
+// seconds of real time for some milliseconds of virtual time.
 constexpr VirtualDuration kBriefest = VirtualDuration::Microseconds(1);
 constexpr int kMostBriefest = 5000;
-// So many of them a new zone is good for.
+// A new zone is good for so many of the shortest worthwhile steps.
 constexpr std::int64_t kStepsInZone = 5;
-// Islands that can meet go on in windows as long as this: what they are taken beyond the time at
-// which they meet is taken for nothing.
+// Islands that can meet go on in windows as long as this: the steps beyond the time at which they
+// meet are taken for nothing.
 constexpr VirtualDuration kWindow = VirtualDuration::Milliseconds(20);
-// Of a step that has a zone's edge before it.
+// The longest step that has a zone's edge before it.
 constexpr VirtualDuration kLongestWay = VirtualDuration::Seconds(1000);
 
 VirtualDuration BriefestStep(const ModelEngine& engine) {
@@ -71,7 +71,8 @@ void ModelIslands::AddStatics() {
   }
 }
 
-// Another one that moves, or what of another one does not.
+// Whether an island has something to meet: another island that moves, or a static shape of another
+// model.
 bool ModelIslands::CanAnyMeet(const std::vector<GroupIsland*>& meeting) const {
   const auto is_of_another = [&](const StaticBall& one) {
     return !meeting[0]->group->Has(one.model);
@@ -80,7 +81,7 @@ bool ModelIslands::CanAnyMeet(const std::vector<GroupIsland*>& meeting) const {
          (meeting.size() == 1 && std::ranges::any_of(statics_, is_of_another));
 }
 
-// The engine has been made with them, in this order.
+// The engine has been made with the units, in this order.
 void ModelIslands::AddUnit(const std::vector<int>& models) {
   const int index = static_cast<int>(group_of_island_.size());
   auto group = std::make_unique<ModelGroup>(models_, models, index);
@@ -111,7 +112,7 @@ void ModelIslands::ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench
     throw DynamicsError(fmt::format("link '{}': a commanded wrench must be finite",
                                     model.links[static_cast<std::size_t>(part.index)].name));
   }
-  // The frame says along whose axes it is, and models' engines know of no lag.
+  // The frame says along whose axes the wrench is, and models' engines know of no lag.
   const Wrench acting{.force_n = wrench.force_n, .torque_nm = wrench.torque_nm};
   Require(wrench == acting, "a wrench on a link does not lag, and its frame is an argument");
   Command(part.model, PlaceOfLink(part.index, frame), acting, t, now);
@@ -146,7 +147,8 @@ void ModelIslands::Spin(int rotor, double speed_radps, VirtualTime t, VirtualTim
           AsNumbers(speed_radps, spun.time_constant), t, now);
 }
 
-// What has been taken back may be needed again: so all islands that the model was in have it.
+// Islands from before a regrouping may be needed again: so all islands that the model was in get
+// the command.
 void ModelIslands::Command(int model, int place, const Wrench& wrench, VirtualTime t,
                            VirtualTime now) {
   TakeBackMeetings(t);
@@ -243,7 +245,7 @@ void ModelIslands::ReadContacts(VirtualTime t, VirtualTime now,
   }
 }
 
-// Those in `asked_`; where one of them can meet others, all that can.
+// Brings the islands in `asked_` to `t`; where one of them can meet others, all islands that can.
 void ModelIslands::Reach(VirtualTime t, VirtualTime now) {
   const bool may_meet =
       std::any_of(asked_.begin(), asked_.end(), [this](auto* of) { return Meets(*of); });
@@ -275,8 +277,8 @@ void ModelIslands::SettleMeeting(VirtualTime t) {
   }
 }
 
-// The earliest one that is about to leave its zone waits until all others have come as far: only
-// then is it known that nobody has met anybody before.
+// The earliest island that is about to leave its zone waits until all others have come as far: only
+// then is it known that no island has met another one before.
 void ModelIslands::ReachTogether(VirtualTime t) {
   for (;;) {
     going_.clear();
@@ -297,7 +299,8 @@ void ModelIslands::ReachTogether(VirtualTime t) {
   }
 }
 
-// Side by side. The failure is that of the island that came least far, whoever was first to fail.
+// Advances the islands side by side. The failure is that of the island that came least far,
+// whichever island was first to fail.
 void ModelIslands::AdvanceAll(const std::vector<GroupIsland*>& islands, VirtualTime t) {
   const auto advance = [&](std::size_t i, std::size_t /*worker*/) {
     try {
@@ -322,7 +325,7 @@ void ModelIslands::AdvanceAll(const std::vector<GroupIsland*>& islands, VirtualT
   std::rethrow_exception(failure);
 }
 
-// To `t`, or to where one of the models is about to leave its zone.
+// Advances to `t`, or to where one of the models is about to leave its zone.
 void ModelIslands::Advance(GroupIsland& of, VirtualTime t) {
   of.is_leaving = false;
   for (int round = 1; of.island.known_until() < t; ++round) {
@@ -346,7 +349,7 @@ void ModelIslands::Advance(GroupIsland& of, VirtualTime t) {
 void ModelIslands::Take(GroupIsland& of, IslandStep& step) {
   const WhoDiverged who = [this](int island, auto) { return NameOf(island); };
   if (engine_->has_set_steps()) {
-    // Where it leads is computed when somebody needs it: a command may come before.
+    // The state where the step leads is computed when it is needed: a command may come before.
     CheckState(*engine_, step.island, step.from, step.at, who);
     step.length_s = step.limit.seconds();
     step.to.clear();
@@ -355,7 +358,7 @@ void ModelIslands::Take(GroupIsland& of, IslandStep& step) {
   }
   IslandStep* steps[] = {&step};
   TakeSteps(*engine_, steps, who);
-  // It was pushed harder than is trusted.
+  // A model was pushed harder than is trusted.
   while (Meets(of) && LengthOf(step) > kBrief && HasLeft(of, step)) {
     step.limit = std::max(kBrief, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2));
     TakeSteps(*engine_, steps, who);
@@ -364,7 +367,7 @@ void ModelIslands::Take(GroupIsland& of, IslandStep& step) {
   of.island.Took();
 }
 
-// What error control cuts to so short steps, again and again, never comes to its end.
+// A motion that error control cuts to so short steps, again and again, never comes to its end.
 void ModelIslands::CheckLength(GroupIsland& of, const IslandStep& step) {
   const bool is_brief = step.length_s < kBriefest.seconds() && LengthOf(step) < step.limit;
   of.briefest_steps = is_brief ? of.briefest_steps + 1 : 0;
@@ -374,7 +377,7 @@ void ModelIslands::CheckLength(GroupIsland& of, const IslandStep& step) {
                                   RemedyFor(*engine_, step.island)));
 }
 
-// At the end of the step, or half way there.
+// Whether a model has left its zone at the end of the step, or half way there.
 bool ModelIslands::HasLeft(GroupIsland& of, const IslandStep& step) {
   if (TimeToLeave(of, step.to) == 0) return true;
   std::vector<double> state;
@@ -404,7 +407,7 @@ void ModelIslands::AddMovers(GroupIsland& of, VirtualTime at) {
   }
 }
 
-// Whoever is too near to one that needs a new zone needs one, too.
+// An island that is too near to one that needs a new zone needs a new zone, too.
 std::vector<ModelIslands::GroupIsland*> ModelIslands::InTheWayOf(GroupIsland& leaving,
                                                                  VirtualTime at) {
   std::vector<GroupIsland*> concerned = {&leaving};
@@ -427,7 +430,7 @@ std::vector<ModelIslands::GroupIsland*> ModelIslands::InTheWayOf(GroupIsland& le
   return concerned;
 }
 
-// `movers_` are the models of those concerned.
+// `movers_` are the models of the islands concerned.
 void ModelIslands::Regroup(const std::vector<GroupIsland*>& concerned, VirtualTime at) {
   ++work_.regrouped;
   std::vector<Ball> others;
@@ -489,7 +492,7 @@ ModelGroup& ModelIslands::GroupOf(const std::vector<int>& models, const std::vec
   return *group;
 }
 
-// Whoever met after `t` goes on from there as if that had not been.
+// Islands that met after `t` go on from there as if they had not met.
 void ModelIslands::TakeBackMeetings(VirtualTime t) {
   while (!regroupings_.empty() && regroupings_.back().at > t) {
     Regrouping& last = regroupings_.back();

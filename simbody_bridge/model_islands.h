@@ -1,10 +1,10 @@
-// The islands of models. A model that others can touch is an island by itself as long as none of
-// them is near: as long as it stays in its zone (model/zones.h). When it is about to leave that, it
-// is looked anew who is near whom: those who are go on as one island from that instant, and those
-// who have parted as several. What of a model is fixed to the world is like the world's own: it is
-// in the island of whoever is near, and joins nobody. When that is follows from the models' motion
-// alone; so their motion remains a function of the commands, and what is taken back takes back the
-// meetings, too.
+// The islands of models. A model that others can touch is an island by itself as long as no other
+// is near: as long as the model stays in its zone (model/zones.h). When a model is about to leave
+// its zone, models are grouped anew: models that are near each other go on as one island from that
+// instant, and models that have parted go on as several islands. The part of a model that is fixed
+// to the world is like a fixture of the world: it is in the island of each model that is near, and
+// joins no models. The instants of grouping follow from the models' motion alone; so their motion
+// remains a function of the commands, and to take back motion takes back the meetings, too.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ class ModelIslands {
   // `work` outlives this.
   ModelIslands(const WorldSpec& world, Dynamics::Work& work);
 
-  // Those whom islands are shared out to; outlives this.
+  // Islands are shared out to `team`, which outlives this.
   void UseTeam(Team& team) { team_ = &team; }
 
   void InterruptBy(const std::function<bool()>& asked) { is_interrupted_ = asked; }
@@ -39,7 +39,7 @@ class ModelIslands {
   int count() const { return static_cast<int>(islands_.size()); }
   const ModelParts& parts() const { return parts_; }
 
-  // As of Dynamics. Nothing before `now` matters any more.
+  // As Dynamics' functions. Nothing before `now` matters any more.
   void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t,
                    VirtualTime now);
   void Drive(int joint, const JointDrive& drive, VirtualTime t, VirtualTime now);
@@ -48,10 +48,10 @@ class ModelIslands {
                  std::span<LinkState> states);
   void ReadJoints(VirtualTime t, VirtualTime now, std::span<const int> joints,
                   std::span<JointState> states);
-  // Those of each island after each other.
+  // The contacts of one island after those of the other.
   void ReadContacts(VirtualTime t, VirtualTime now, std::vector<ContactForce>* contacts);
 
-  // What is gone on from.
+  // The state that an island goes on from.
   struct SavedIsland {
     ModelGroup* group = nullptr;
     std::vector<Ball> zones;
@@ -64,9 +64,9 @@ class ModelIslands {
  private:
   struct GroupIsland {
     ModelGroup* group;
-    std::vector<Ball> zones;  // of each of the models; none where none meets another
+    std::vector<Ball> zones;  // of each model; empty: no model can meet another one
     Island island;
-    bool is_leaving = false;  // one of them its zone, at the island's frontier
+    bool is_leaving = false;  // a model its zone, at the island's frontier
     std::exception_ptr failure = nullptr;
     int briefest_steps = 0;  // in a row
   };
@@ -74,7 +74,7 @@ class ModelIslands {
   // When models were grouped anew.
   struct Regrouping {
     VirtualTime at;
-    std::vector<Owned> before;  // go on if it is taken back
+    std::vector<Owned> before;  // to go on with if the regrouping is taken back
     std::vector<GroupIsland*> after;
   };
 
@@ -115,19 +115,19 @@ class ModelIslands {
   const std::vector<RobotModel> models_;
   const ModelParts parts_;
   Dynamics::Work& work_;
-  std::unique_ptr<ModelEngine> engine_;  // none where there is no model
+  std::unique_ptr<ModelEngine> engine_;  // null: there is no model
   std::vector<int> unit_of_;             // of each model
   VirtualDuration brief_;                // no step is worth less
-  std::optional<Zones> rules_;           // none where no model can meet another one
+  std::optional<Zones> rules_;           // none: no model can meet another one
 
   std::vector<StaticBall> statics_;  // of models that touch others
-  // By their models, and by those whose static shapes these touch.
+  // Groups by their models, and by the models whose static shapes these touch.
   std::map<std::pair<std::vector<int>, std::vector<int>>, std::unique_ptr<ModelGroup>> groups_;
   std::vector<ModelGroup*> group_of_island_;  // by the engine's index
   std::vector<Owned> islands_;
   std::vector<GroupIsland*> of_model_;
-  std::vector<Regrouping> regroupings_;  // that can still be taken back, the latest last
-  // All islands that can meet are known until here, and so is who meets before.
+  std::vector<Regrouping> regroupings_;  // can still be taken back; the latest last
+  // Islands that can meet are known until this time, and so are the meetings before it.
   VirtualTime met_until_;
 
   std::function<bool()> is_interrupted_;  // see Dynamics::InterruptBy

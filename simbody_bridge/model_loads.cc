@@ -12,7 +12,7 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-// The drag of what turns counter-clockwise turns its link clockwise.
+// The drag of a rotor that turns counter-clockwise turns its link clockwise.
 Load LoadOfSquare(const Rotor& rotor) {
   const double drag = rotor.is_clockwise ? rotor.drag_nms2 : -rotor.drag_nms2;
   const auto& q = rotor.frame.orientation_xyzw;
@@ -70,7 +70,7 @@ std::span<const Wrench> ModelLoads::At(const Acting& acting) {
              });
 }
 
-// The square fades twice as fast.
+// The square of the share fades twice as fast.
 std::span<const Wrench> ModelLoads::MeanOver(const IslandStep& step, double seconds) {
   return Sum(step.wrenches, step.remainders,
              [&](const Wrench& command, const Remainder& remainder) {
@@ -82,8 +82,8 @@ std::span<const Wrench> ModelLoads::MeanOver(const IslandStep& step, double seco
              });
 }
 
-// What lags together is left to the same share: a robot's rotors have one time constant, and are
-// commanded at once.
+// Commands that lag together are left to the same share: a robot's rotors have one time constant,
+// and are commanded at once.
 template <class LeftOf>
 class ModelLoads::Lefts {
  public:
@@ -102,7 +102,7 @@ class ModelLoads::Lefts {
   const LeftOf& left_of_;
   VirtualTime since_ = VirtualTime::Never();
   VirtualDuration lag_{};
-  Left left_{};  // nothing, of what never lagged
+  Left left_{};  // 0 for commands that never lagged
 };
 
 template <class LeftOf>

@@ -1,4 +1,4 @@
-// What acts on the links and joints of an island of models, whichever engine moves them: the
+// The loads on the links and joints of an island of models, whichever engine moves the island: the
 // commands as they act by now, of which some lag, and the rotors, each of which is a load on its
 // link.
 #pragma once
@@ -15,12 +15,12 @@ class ModelLoads {
   // The island has the models of these indices.
   ModelLoads(std::span<const RobotModel> all, std::span<const int> models);
 
-  // By place (model_engine.h), as if nothing lagged and what rotors do were commanded to their
-  // links. Valid until the next call.
+  // The loads by place (model_engine.h), as if nothing lagged and the effect of rotors were
+  // commanded to their links. Results are valid until the next call.
   //
-  // `after_s` from the step's beginning on.
+  // The loads `after_s` from the step's beginning on.
   std::span<const Wrench> At(const IslandStep& step, double after_s);
-  // The mean over that time from its beginning on, which is exact: for steps with one force.
+  // The mean over `seconds` from the step's beginning on, which is exact: for steps with one force.
   std::span<const Wrench> MeanOver(const IslandStep& step, double seconds);
   std::span<const Wrench> At(const Acting& acting);
 
@@ -29,7 +29,7 @@ class ModelLoads {
     std::size_t place, place_of_link;
     Load of_square;  // along the link's axes, at its origin, for each (rad/s)^2
   };
-  // What is left of a command's remainder, at an instant or as a mean.
+  // The share that is left of a command's remainder, at an instant or as a mean.
   struct Left {
     double share, square_of_share;
   };

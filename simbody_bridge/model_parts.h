@@ -1,5 +1,5 @@
-// The links, joints and rotors of all models, numbered through: those of the first model in its own
-// order, then those of the next. Pure.
+// The links, joints and rotors of all models, numbered through: the first model's in its own order,
+// then the next model's. Pure.
 #pragma once
 
 #include <cstddef>
@@ -21,11 +21,11 @@ class ModelParts {
  public:
   explicit ModelParts(const std::vector<RobotModel>& models);
 
-  // None: there is no such one.
+  // None: there is no such part.
   std::optional<int> FindLink(std::string_view model, std::string_view link) const;
   std::optional<int> FindJoint(std::string_view model, std::string_view joint) const;
   std::optional<int> FindRotor(std::string_view model, std::string_view rotor) const;
-  // By number, of which there has to be one.
+  // The part with a number, which has to exist.
   const ModelPart& LinkAt(int link) const { return At(links_, link); }
   const ModelPart& JointAt(int joint) const { return At(joints_, joint); }
   const ModelPart& RotorAt(int rotor) const { return At(rotors_, rotor); }

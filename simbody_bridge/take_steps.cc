@@ -15,7 +15,7 @@ namespace {
                                   RemedyFor(engine, island)));
 }
 
-// With steps of a set length engines take whatever comes out of one, and stumble over it only in
+// With steps of a set length engines take whatever comes out of a step, and stumble over it only in
 // the next.
 void Check(IslandEngine& engine, const IslandStep& step, const WhoDiverged& who) {
   CheckState(engine, step.island, step.from, step.at, who);
@@ -28,7 +28,7 @@ void Check(IslandEngine& engine, const IslandStep& step, const WhoDiverged& who)
       "the integration from {:.12g} s on failed: the integrator makes no progress", from_s));
 }
 
-// One of the steps cannot be taken: to say which, and whose it is.
+// One of the steps cannot be taken: takes each step alone, to say which step that is, and whose.
 void TakeEachStep(IslandEngine& engine, std::span<IslandStep* const> steps,
                   const WhoDiverged& who) {
   for (IslandStep* step : steps) {

@@ -13,7 +13,7 @@ namespace tcs {
 // Says whose motion it is that has diverged in a state of the island.
 using WhoDiverged = std::function<std::string(int island, std::span<const double> state)>;
 
-// What to do about whatever the engine suspects, with a semicolon before it; empty: nobody knows.
+// The remedy for the part that the engine suspects, with a semicolon before it; empty: not known.
 std::string RemedyFor(IslandEngine& engine, int island);
 
 // Throws DynamicsError.

@@ -14,10 +14,11 @@ namespace {
 
 // A wake across processors takes 50 to 90 us on virtual machines: less than half of this.
 constexpr double kWorthAWakeNs = 200'000;
-// A helper looks for more as long before it sleeps: steps come in rounds.
+// A helper looks for more work for this long before it sleeps: steps come in rounds.
 constexpr std::int64_t kLookNs = 30'000;
-// Who waits longer for somebody that has begun, beside twice what a piece costs, does without help
-// for a time: longer each time, until so much has gone well.
+// A caller that waits longer than this for a helper that has begun, beside twice what a piece
+// costs, does without help for a time: longer each time, until so many waits in a row have gone
+// well.
 constexpr std::int64_t kStarvedNs = 300'000, kLeftToOthersNs = 500'000'000;
 constexpr int kMostDoublings = 6, kWellInARow = 100;
 constexpr int kNiceness = -10;  // where that is permitted
@@ -45,7 +46,8 @@ class Team::Helper {
     pthread_sigmask(SIG_SETMASK, &all, &before);
     thread_ = std::thread([this] { Live(); });
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    // From here: it would not get to it itself beside whoever has made it, at real-time priority.
+    // Set from here: the helper would not get to do so itself beside the thread that has made it,
+    // at real-time priority.
     cpu_set_t one;
     CPU_ZERO(&one);
     CPU_SET(cpu, &one);
@@ -63,13 +65,13 @@ class Team::Helper {
     state_.store(kAsked);
     state_.notify_one();
   }
-  // It has not begun, and does not any more.
+  // True: the helper has not begun, and does not begin any more.
   bool TakeBack() {
     int asked = kAsked;
     return state_.compare_exchange_strong(asked, kIdle);
   }
   bool IsDone() const { return state_.load() == kIdle; }
-  // Pieces, the last time.
+  // The number of pieces that the helper did the last time.
   std::size_t done() const { return done_; }
 
  private:
@@ -146,7 +148,7 @@ void Team::ForEach(std::size_t count, PieceCost* cost, const Each& each) {
   }
 }
 
-// It does not sleep: whoever sleeps here lets others take this processor for idle.
+// The caller does not sleep: a thread that sleeps here lets others take this processor for idle.
 void Team::Await(Helper& helper, std::int64_t most_ns) {
   const std::int64_t since_ns = HostNs();
   while (!helper.IsDone()) Pause();

@@ -1,6 +1,7 @@
 // Work that is shared out to other processors of the host: threads of this process, one bound to
-// each, who help where it is worth waking them. Whoever calls does its part itself, and waits only
-// for what somebody has begun: a helper that does not get its processor costs nothing but the wake.
+// each, which help where it is worth waking them. The caller does its part itself, and waits only
+// for pieces that a helper has begun: a helper that does not get its processor costs nothing but
+// the wake.
 //
 // Helpers have ordinary priority, take no signals, and end with the team. One thread at a time
 // calls a team.
@@ -16,7 +17,7 @@
 
 namespace tcs {
 
-// What one piece of some kind of work has cost of late, on average.
+// The cost of one piece of some kind of work of late, on average.
 class PieceCost {
  public:
   void Learn(double ns) { ns_ += (ns - ns_) / 8; }
@@ -28,15 +29,15 @@ class PieceCost {
 
 class Team {
  public:
-  // Counts in `helped` what was done by helpers; it outlives this.
+  // Counts in `helped` the pieces that were done by helpers; `helped` outlives this.
   explicit Team(std::int64_t& helped);
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  // A helper on each of these processors; those that there were go.
+  // Puts a helper on each of these processors; earlier helpers end.
   void Set(std::span<const int> cpus);
-  // Those who work: the caller is worker 0.
+  // The number of workers: the caller is worker 0.
   std::size_t workers() const { return helpers_.size() + 1; }
 
   // Calls `each` with 0, 1, … below `count` and the worker's number. The pieces do not depend on
@@ -62,7 +63,7 @@ class Team {
   bool always_asks_ = false;
   int well_ = 0;                    // waits in a row that were as short as they should be
   int left_to_others_ = 0;          // in a row
-  std::int64_t not_before_ns_ = 0;  // others need the processors
+  std::int64_t not_before_ns_ = 0;  // until then others need the processors
 };
 
 }  // namespace tcs

@@ -95,7 +95,7 @@ void CheckIntegrator(const IntegratorSpec& integrator) {
     throw DynamicsError(fmt::format("integrator: the fixed step must not be negative, but is {} ns",
                                     integrator.fixed_step.ns()));
   }
-  if (!TraitsOf(integrator.engine).has_integrators) return;  // the accuracy is theirs
+  if (!TraitsOf(integrator.engine).has_integrators) return;  // only integrators have an accuracy
   if (!(integrator.accuracy > 0 && integrator.accuracy < 1)) {
     throw DynamicsError(fmt::format("integrator: the accuracy must lie between 0 and 1, but is {}",
                                     integrator.accuracy));

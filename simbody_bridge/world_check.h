@@ -1,4 +1,4 @@
-// Says what is wrong with a world before an engine sees it.
+// Finds the mistake in a world before an engine sees it.
 #pragma once
 
 #include "simbody_bridge/dynamics.h"

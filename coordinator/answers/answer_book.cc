@@ -21,7 +21,8 @@ std::int64_t ToThreeDigits(std::int64_t ns) {
 }
 
 constexpr std::size_t kMostPeriods = 256, kMostUncounted = 512;
-// The shortest period is a timer's that is so often that this times as many are all.
+// A timer's period is the shortest one that occurs often enough: this many times its count reaches
+// the count of all.
 constexpr std::int64_t kOftenEnough = 4;
 
 }  // namespace
@@ -35,7 +36,7 @@ void AnswerBook::Tell(std::function<void(const Response&)> on_response) {
   on_response_ = std::move(on_response);
 }
 
-// What it did before its first sample, or command, was its start.
+// The client's work before its first sample, or command, was its start.
 void AnswerBook::HasBegun(int client) {
   Kept& kept = KeptOf(client);
   if (std::exchange(kept.has_begun, true)) return;
@@ -157,8 +158,8 @@ void AnswerBook::AddPause(const Pause& pause, std::int64_t ns, TimeParts& parts)
   part += std::max<std::int64_t>(0, ns);
 }
 
-// Who is charged less than it has run, as it was charged too much before, has computed all the
-// same.
+// A thread that is charged less than it has run, as it was charged too much before, has computed
+// all the same.
 void AnswerBook::AddCores(const CoreWaits::Times& times, std::int64_t charged_ns,
                           Response& response) {
   response.charged_ns += charged_ns;
@@ -171,7 +172,7 @@ void AnswerBook::AddCores(const CoreWaits::Times& times, std::int64_t charged_ns
                                                 std::max<std::int64_t>(0, response.RestNs()));
 }
 
-// The activation, or, of one that has paused, that together with what came before.
+// The activation until now, including the part before a pause.
 Response AnswerBook::UntilNow(Thread& thread, const Who& who, const Activation& activation,
                               std::int64_t end_ns, std::int64_t executed_ns) {
   const std::int64_t ready_ns = cores_.ReadySince(who.thread);
@@ -185,7 +186,7 @@ Response AnswerBook::UntilNow(Thread& thread, const Who& who, const Activation& 
     AddCores(on_cores, executed_ns, response);
     return response;
   }
-  // What was there while the thread was still at something earlier has waited for that.
+  // Input that was there while the thread was still at something earlier has waited for that.
   const std::int64_t free_ns =
       std::clamp(thread.ended_ns, activation.release_ns, std::max(activation.release_ns, start_ns));
   Response response{.client = who.client,
@@ -296,14 +297,14 @@ void AnswerBook::Judge(Kept& kept, Response response, std::int64_t period_ns, in
   Add(parts.locks_ns, late.locks_ns);
 }
 
-// No expiry follows: it has the time that it had before.
+// No expiry follows the last activation: it has the period of the activation before.
 void AnswerBook::JudgeLast(Thread& thread) {
   std::optional<Response> last = std::exchange(thread.timed, std::nullopt);
   if (last.has_value())
     Judge(KeptOf(thread.client), std::move(*last), thread.timer_period_ns, kTimer);
 }
 
-// It waits in the midst of its work when the run ends.
+// The thread waits in the midst of its work when the run ends.
 void AnswerBook::EndPaused(Thread& thread, std::int64_t end_ns) {
   std::optional<Begun> begun = std::exchange(thread.begun, std::nullopt);
   if (!begun.has_value()) return;
@@ -312,7 +313,8 @@ void AnswerBook::EndPaused(Thread& thread, std::int64_t end_ns) {
   EndOf(thread, std::move(begun->response), begun->release);
 }
 
-// Whoever is late leaves expiries out, and finds twice the period, or more, as often as once.
+// A client that is late leaves expiries out, and finds twice the period, or more, as often as the
+// period.
 std::int64_t AnswerBook::PeriodOf(const Source& source) {
   for (const auto& [period_ns, count] : source.periods_ns) {
     if (kOftenEnough * count >= source.judged) return period_ns;
@@ -336,7 +338,7 @@ std::vector<ClientFigures> AnswerBook::Conclude(std::int64_t end_ns) {
     if (kept.client.deadline_ns > 0) {
       figures.deadline.deadline_ns = kept.client.deadline_ns;
     } else if (!kept.client.is_periodic && !figures.commands) {
-      figures.deadline = {};  // nobody expects it to keep a period
+      figures.deadline = {};  // nobody expects the client to keep a period
       figures.late = {};
     } else if (!kept.sources.empty()) {
       const auto most = std::ranges::max_element(

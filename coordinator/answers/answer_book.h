@@ -1,13 +1,13 @@
-// How well clients kept up: fed with what happens, it says for each client how long it took from
-// what it was released by to the end of its work, which deadlines it missed, and how old its data
-// was (client_figures.h). Pure; all times are virtual nanoseconds.
+// How well clients kept up: fed with what happens, the book says for each client how long it took
+// from its release to the end of its work, which deadlines it missed, and how old its data was
+// (client_figures.h). Pure. Times are virtual nanoseconds.
 //
-// An activation is one of tasks/activations.h, but for waits in its midst (Pause), which do not end
-// it here. Its release is when what it works on was there for
-// it: the expiry of its timer, or the arrival of the oldest datagram that it took at its beginning,
-// whether or not it was waiting by then. Activations for other causes (a start, another thread, a
-// signal) are not judged, and neither are those of threads that only help: neither a process's
-// first one, nor one that takes samples or sends commands.
+// An activation is one of tasks/activations.h, but waits in its midst (Pause) do not end it here.
+// The release is the time at which the activation's input was there: the expiry of its timer, or
+// the arrival of the oldest datagram that the thread took at the activation's beginning, whether or
+// not the thread was waiting by then. Activations for other causes (a start, another thread, a
+// signal) are not judged. Helper threads are not judged either: a helper is not the first thread of
+// its process, takes no samples and sends no commands.
 //
 // A deadline counts from the release: the client's own, or, for a client that is periodic or whose
 // commands reach an actuator, the period of the sensor that released it, or of its timer: the time
@@ -37,48 +37,49 @@ class AnswerBook {
  public:
   struct Client {
     std::string name;
-    int robot = 0;                 // its number, of several clients the same
-    std::int64_t deadline_ns = 0;  // 0: the period, if it is expected to keep it
+    int robot = 0;                 // the robot's number; several clients may share it
+    std::int64_t deadline_ns = 0;  // 0: the period, if the client has to keep it
     bool is_periodic = false;
   };
-  // Whose thread something happens to.
+  // The thread to which something happens, and its client.
   struct Who {
-    int client = 0;        // its place in the list that Open was given
-    int thread = -1;       // another number for each that lives, none left out; -1: not known which
+    int client = 0;        // the client's place in Open's list
+    int thread = -1;       // unique among living threads, without gaps; -1: unknown
     bool is_first = true;  // of its process
   };
   // A datagram that a thread takes.
   struct Taken {
     std::int64_t arrived_ns = 0;
-    // When what it tells of was measured: the sample, or the newest that its sender had taken; -1:
+    // When the content was measured: the sample, or the newest one that the sender had taken; -1:
     // not known.
     std::int64_t sampled_ns = -1;
-    std::int64_t period_ns = 0;  // of the sensor whose sample it is; 0: it is none
-    int sensor = -1;             // its place in the list that Open was given
-    // The activation that it belongs to: 0, the one that goes on; n, the one that the n-th receipt
-    // since then began (shm/receipts.h).
+    std::int64_t period_ns = 0;  // of the sensor whose sample this is; 0: no sample
+    int sensor = -1;             // the sensor's place in Open's list
+    // The activation that the datagram belongs to: 0, the one that goes on; n, the one that the
+    // n-th receipt since then began (shm/receipts.h).
     unsigned activation = 0;
   };
 
-  // What a thread waits for in the midst of its work.
+  // A wait of a thread in the midst of its work.
   struct Pause {
-    enum class For { kLock, kRoom };  // the lock of another thread; that others take what was sent
+    enum class For { kLock, kRoom };  // the lock of another thread; room: others take what was sent
     For what = For::kLock;
     int client = -1;  // whose thread has the lock; -1: not known
   };
 
   // Sensors by the names of their channels.
   void Open(std::vector<Client> clients, std::vector<std::string> sensors);
-  // Is told of each activation by time or input once its deadline is known. Null: nobody.
+  // `on_response` is told of each activation by time or input once its deadline is known. Null:
+  // nobody is told.
   void Tell(std::function<void(const Response&)> on_response);
 
   void Took(const Who& who, const Taken& taken);
-  // It sends something to where actuators are driven from.
+  // The thread sends something to a place from which actuators are driven.
   void Commanded(const Who& who, std::int64_t at_ns);
-  // When the newest sample that the thread can know of was measured; -1: it knows of none.
+  // When the newest sample that the thread can know of was measured; -1: there is none.
   std::int64_t LastSampledOf(int thread) const;
-  // When the activation was released that the n-th receipt began at `at_ns`; 0: the one that goes
-  // on, if a receipt began it before the last stop.
+  // The release of the activation that the n-th receipt began at `at_ns`; 0: of the activation that
+  // goes on, if a receipt began it before the last stop.
   std::int64_t ReleaseOf(int thread, unsigned receipt, std::int64_t at_ns) const;
   // So many receipts have been told of: the last of them began the activation that goes on now.
   void ForgetReceipts(int thread, unsigned receipts);
@@ -87,32 +88,33 @@ class AnswerBook {
   void Ready(const Who& who, std::int64_t at_ns);
   // A thread of that client had that core of its robot.
   void Ran(const Who& who, int core, std::int64_t start_ns, std::int64_t end_ns);
-  // An activation goes on once what it waits for is there, and the thread is ready. What follows is
-  // told as another activation, by a thread.
+  // An activation pauses: it goes on once the thread has what it waits for, and is ready. The rest
+  // of the activation is told as another one, by a thread.
   void Pauses(const Who& who, const Activation& activation, unsigned receipt, std::int64_t at_ns,
               std::int64_t executed_ns, const Pause& pause);
-  // An activation ends, or is cut off by the run's end. It began with that receipt, or (0) with the
-  // end of a wait.
+  // An activation ends, or is cut off by the run's end. The activation began with that receipt, or
+  // (0) with the end of a wait.
   void Ended(const Who& who, const Activation& activation, unsigned receipt, std::int64_t end_ns,
              std::int64_t executed_ns);
 
   void Dies(int thread);
-  // It waits: what it takes from now on is of its next activation.
+  // The thread waits: a datagram that it takes from now on belongs to its next activation.
   void Idles(int thread);
-  // At the run's end that has waited, and the thread has not come to it.
+  // At the run's end the datagram `waiting` is there, and the thread has not taken it.
   void NeverCameTo(const Who& who, const Taken& waiting, std::int64_t end_ns);
 
   // The run is over, then. By client, as Open was given them; without inputs.
   std::vector<ClientFigures> Conclude(std::int64_t end_ns);
 
  private:
-  // What an activation was released by, if that is known.
+  // The cause that released an activation, if that is known.
   struct Release {
     std::int64_t at_ns = INT64_MAX;
     std::int64_t period_ns = 0;
     int sensor = -1;
   };
-  // Of the activation that goes on (0), and of those that a receipt each has begun.
+  // The releases of the activation that goes on (0), and of the activations that began with a
+  // receipt.
   class Releases {
    public:
     static constexpr std::size_t kMost = shm::Receipts::kMost + 1;
@@ -131,7 +133,7 @@ class AnswerBook {
 
    private:
     std::array<Release, kMost> by_receipt_;
-    std::size_t used_ = 0;  // none beyond is known
+    std::size_t used_ = 0;  // no release from there on is known
   };
   // An activation that pauses, or has gone on since.
   struct Begun {
@@ -144,8 +146,8 @@ class AnswerBook {
     bool is_first = true, takes_samples = false, commands = false;
     std::int64_t last_sampled_ns = -1;
     Releases releases;
-    bool is_by_receipt = false;  // the one that goes on
-    std::int64_t ended_ns = 0;   // its last activation
+    bool is_by_receipt = false;  // the activation that goes on
+    std::int64_t ended_ns = 0;   // the end of the last activation
     std::optional<Begun> begun;
     std::optional<Response> timed;     // to be judged once the next expiry is known
     std::int64_t timer_period_ns = 0;  // between the last two
@@ -153,10 +155,10 @@ class AnswerBook {
   // Deadlines that were periods of that.
   struct Source {
     std::int64_t judged = 0;
-    // How often a period was so long, to three digits: whoever is late may leave expiries out.
+    // How often each period occurred, to three digits: a late client may leave expiries out.
     std::map<std::int64_t, std::int64_t> periods_ns;
   };
-  // What an activation took.
+  // The times of an activation.
   struct Times {
     std::int64_t response_ns, start_delay_ns, execution_ns;
   };
@@ -164,11 +166,11 @@ class AnswerBook {
     Client client;
     ClientFigures figures;
     ActivationTimes judged, others;
-    // The same of the latest, which are counted hundreds at once.
+    // The times of the latest activations, which are added to the two above hundreds at once.
     std::vector<Times> new_judged, new_others;
     bool has_begun = false;
     std::int64_t in_a_row = 0;
-    std::map<int, Source> sources;  // by sensor; kTimer: its timer
+    std::map<int, Source> sources;  // by sensor; kTimer: the client's timer
   };
 
   Kept& KeptOf(int client) { return clients_[static_cast<std::size_t>(client)]; }

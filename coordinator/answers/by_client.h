@@ -1,5 +1,5 @@
-// Times of clients, by their numbers. Of most activations nobody's is kept, and of the others one's
-// or two: a short list is at hand sooner than a tree.
+// Times of clients, by their numbers. Most activations keep no client's time, and the others keep
+// one or two: a short list is faster than a tree.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class ByClient {
   // In the order of clients, each once.
   ByClient(std::initializer_list<Entry> entries) : entries_(entries) {}
 
-  // 0 until something is added to it.
+  // The client's time, 0 until something is added to it.
   std::int64_t& operator[](int client) {
     const auto place = std::ranges::lower_bound(entries_, client, {}, &Entry::first);
     if (place != entries_.end() && place->first == client) return place->second;

@@ -145,7 +145,7 @@ void ChainBook::Count(const LineageOf& of, const Had& had, int client, int comma
   const auto count = [&](Kept& kept) {
     ChainFigures& figures = kept.figures;
     figures.age.Add(age_ns);
-    // Most come on the way of the one before.
+    // Most commands come on the same path as the command before.
     if (kept.newest == nullptr || kept.newest->first != path_)
       kept.newest = &*kept.paths.try_emplace(path_).first;
     ++kept.newest->second;
@@ -202,7 +202,7 @@ std::vector<ChainFigures> ChainBook::Conclude() const {
   };
   for (const Kept& kept : named_) add(kept);
   for (const auto& [ends, kept] : kept_) {
-    // What the scenario names by its ends is that already.
+    // A chain that the scenario names by its ends is in the list already.
     const bool is_named = std::ranges::any_of(
         named_, [&](const Kept& one) { return one.figures.name == kept.figures.name; });
     if (!is_named) add(kept);

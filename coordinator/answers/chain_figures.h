@@ -10,13 +10,13 @@
 
 namespace tcs {
 
-// One part of the way from a sensor to an actuator, in the order of the way.
+// A part of the way from a sensor to an actuator. The parts are in the order of the way.
 struct ChainHop {
   enum class Of {
     kSensor,    // from the sample to when the first program has it: the sensor's latency
-    kWaiting,   // it was there, and the program had not taken it
-    kProgram,   // the program's thread had it, until it first sent something
-    kHeld,      // it knew of nothing newer when it sent something again
+    kWaiting,   // the sample was there, and the program had not taken it
+    kProgram,   // the program's thread had the sample, until it first sent something
+    kHeld,      // the thread knew of nothing newer when it sent again
     kWay,       // from one program to the next
     kActuator,  // from the command to when it acts
   };
@@ -38,7 +38,7 @@ std::string NameOf(const ChainHop& hop);
 
 struct ChainFigures {
   std::string name;              // "lidar->wheels", or as the scenario calls it
-  std::int64_t deadline_ns = 0;  // 0: it has none
+  std::int64_t deadline_ns = 0;  // 0: the chain has none
   bool is_named = false;         // by the scenario
   Distribution age;              // of the newest sample that each command knew of, when it acted
   Distribution reaction;         // from each sample to the first command that could know of it

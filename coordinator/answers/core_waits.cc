@@ -49,7 +49,7 @@ ByClient CoreWaits::Shares(ByClient times_ns, std::int64_t most_ns) {
   most_ns = std::max<std::int64_t>(0, most_ns);
   std::int64_t left_of_all_ns = times_ns.TotalNs();
   if (left_of_all_ns <= most_ns) return times_ns;
-  // Each has its share of what is left, so that no nanosecond is lost.
+  // Each client gets its share of the time that is left, so that no nanosecond is lost.
   for (auto& [client, ns] : times_ns) {
     const auto share =
         static_cast<std::int64_t>(static_cast<double>(most_ns) * static_cast<double>(ns) /

@@ -1,6 +1,6 @@
-// Which clients had the cores of their robots while threads were ready to run. Pure; all times are
-// virtual nanoseconds. Threads, clients and robots are numbers, each from 0
-// on and none much greater than there are.
+// Which clients had the cores of their robots while threads were ready to run. Pure. Times are
+// virtual nanoseconds. Threads, clients and robots are numbers from 0 on, and no number is much
+// greater than their count.
 //
 // With several cores, clients that run beside the thread count, too: a share of the time for which
 // it waited in all (Shares).
@@ -23,19 +23,19 @@ class CoreWaits {
     int robot = 0;
   };
 
-  // The thread is ready from then on. That may be told when others have run since.
+  // The thread is ready from then on. The call may come after others have run since.
   void Ready(const Of& who, std::int64_t at_ns);
-  // It had a core.
+  // The thread had a core.
   void Ran(const Of& who, std::int64_t start_ns, std::int64_t end_ns);
-  // For how long each client has had a core since a thread was ready, if there is only one; and
-  // the thread itself.
+  // For how long each client has had a core since a thread was ready, if there is only one core;
+  // and the thread itself.
   struct Times {
     ByClient others_ns;
     std::int64_t own_ns = 0;
   };
-  // It is not ready any more.
+  // The thread is not ready any more.
   Times Stop(int thread);
-  // When it became ready; -1: it is not.
+  // When the thread became ready; -1: it is not ready.
   std::int64_t ReadySince(int thread) const;
 
   // The times together made as long as `most_ns` where they are longer.

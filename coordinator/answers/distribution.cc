@@ -9,7 +9,7 @@ namespace tcs {
 
 namespace {
 
-constexpr int kBits = 11;  // that a rounded value keeps: it is off by less than 1 / 2^10
+constexpr int kBits = 11;  // of a rounded value, which is off by less than 1 / 2^10
 constexpr std::size_t kMostNew = 1024;
 
 }  // namespace
@@ -65,7 +65,7 @@ std::int64_t Distribution::Quantile(double share) const {
   return 0;
 }
 
-// In order, so that each has its place beside the one before.
+// In order, so that each value has its place beside the value before.
 void Distribution::Settle() const {
   if (new_values_.empty()) return;
   std::ranges::sort(new_values_);

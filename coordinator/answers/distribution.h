@@ -17,7 +17,7 @@ class Distribution {
 
   // A value of less than nothing counts as 0.
   void Add(std::int64_t value_ns);
-  // All that the other one has.
+  // Adds all values of the other distribution.
   void Add(const Distribution& other);
 
   std::int64_t count() const;
@@ -32,9 +32,9 @@ class Distribution {
   void Settle() const;
   void RoundIfMany() const;
 
-  // What has been added lately is only noted: a run has many of these, none of them at hand.
+  // New values are only noted: a run has many distributions, and none of them is at hand.
   mutable std::vector<std::int64_t> new_values_;
-  // Of the others:
+  // Of the values before these:
   mutable std::map<std::int64_t, std::int64_t> counts_;  // by value
   mutable std::int64_t count_ = 0, max_ = 0, min_ = 0;
   mutable double sum_ = 0;

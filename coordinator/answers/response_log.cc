@@ -10,7 +10,8 @@ namespace tcs {
 
 namespace {
 
-// As long as a text of a line may be (CsvFile); who had least is left out beyond that.
+// As long as a text of a line may be (CsvFile); the clients with the least time are left out beyond
+// that.
 constexpr std::size_t kMostWhose = 250;
 
 }  // namespace
@@ -22,7 +23,7 @@ std::string ResponseLog::Open(const std::string& path, std::vector<std::string> 
                     "executed_ns,cores_ns,locks_ns,room_ns,rest_ns,whose");
 }
 
-// "core:CLIENT=NS lock:CLIENT=NS", who had most first.
+// "core:CLIENT=NS lock:CLIENT=NS", the client with the most time first.
 std::string ResponseLog::WhoseOf(const TimeParts& parts) const {
   if (parts.cores_ns.empty() && parts.locks_ns.empty()) return {};
   struct Share {

@@ -1,4 +1,4 @@
-// What each activation by time or input took, and what that went into: responses.csv
+// How long each activation by time or input took, and the causes of that time: responses.csv
 // (docs/RESULTS.md), which `tcsim explain` reads. A file that was never opened is not written.
 #pragma once
 

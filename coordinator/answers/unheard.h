@@ -18,7 +18,8 @@ struct Heard {
   std::string where;
 };
 
-// A sentence for each, which names those who received elsewhere, as far as they are few.
+// A sentence for each place, which names the clients that received elsewhere, as far as they are
+// few.
 std::vector<std::string> SentencesOn(const std::vector<Unheard>& unheard,
                                      const std::vector<Heard>& heard);
 

@@ -17,10 +17,10 @@ namespace {
 constexpr std::size_t kMostSentences = 5;
 // From that share of the late time on computing is named.
 constexpr double kNamed = 0.3;
-// Starved is who waits for that share of the run, and for that share of the time for which it was
-// ready.
+// A client is starved that waits for that share of the run, and for that share of the time for
+// which it was ready.
 constexpr double kStarvedRun = 0.25, kStarvedTime = 0.9;
-// Of the datagrams that it was sent: so many may wait when the run ends.
+// The share of a client's datagrams that may be unread when the run ends.
 constexpr double kUnread = 0.05;
 // How many periods old data may be before it is worth a sentence.
 constexpr std::int64_t kOldPeriods = 2;
@@ -53,7 +53,7 @@ std::string_view RankOf(const ClientOutcome& other, const ClientOutcome& client)
   return other.priority > client.priority ? ", of higher priority," : ", of lower priority,";
 }
 
-// Who has most of a time, and how much; nobody has nothing.
+// The client with the most of a time, and how much; no client and 0 if there is none.
 std::pair<std::string, std::int64_t> MostOf(const std::map<std::string, std::int64_t>& times_ns) {
   const auto most =
       std::ranges::max_element(times_ns, {}, [](const auto& one) { return one.second; });
@@ -72,7 +72,7 @@ std::string CauseOf(const ClientOutcome& client, const std::vector<ClientOutcome
                ? fmt::format("it computes {} each time, longer than its deadline", each)
                : fmt::format("it computes {} each time, {} of a core", each, Percent(load));
   }
-  // What waited behind earlier work waited for the cause of that.
+  // Input that waited behind earlier work waited for the cause of that.
   const std::int64_t rest = late.total_ns - late.queued_ns;
   const std::int64_t too_much =
       late.total_ns - figures.deadline.missed * figures.deadline.deadline_ns;

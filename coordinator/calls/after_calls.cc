@@ -5,8 +5,9 @@
 namespace tcs {
 
 void AfterCalls::Do(Task& task, EventTime call, bool last) {
-  // Something else may have stopped it before it has even come to the call: then once more. And
-  // once more in any case, for how far it has come is not known.
+  // Something else may have stopped the thread before it has even come to the call: then this is
+  // done once more. It is done once more in any case, because how far the thread has come is not
+  // known.
   const AfterCall what = task.after_call;
   if (last || run_.turn.HasSpoken()) {
     task.after_call = AfterCall::kNone;

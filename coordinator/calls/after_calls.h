@@ -1,6 +1,6 @@
-// What is due after a call that was let through to the kernel: other threads may go on because of
-// it, at the time of the call. So its thread runs just long enough for the kernel to carry the call
-// out, and is then stopped.
+// The work that is due after a call that was let through to the kernel: other threads may go on
+// because of the call, at the time of the call. So the calling thread runs just long enough for the
+// kernel to carry the call out, and is then stopped.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -25,8 +25,8 @@ class AfterCalls {
         signal_wakes_(signal_wakes),
         spawns_(spawns) {}
 
-  // The thread has run since the kernel got the call, which it made at `call`. `last`: it is known
-  // to have come back from it.
+  // The thread has run since the kernel got the call, which the thread made at `call`. `last`: the
+  // thread is known to have come back from the call.
   void Do(Task& task, EventTime call, bool last);
 
  private:

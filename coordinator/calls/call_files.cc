@@ -16,7 +16,7 @@ namespace tcs {
 
 namespace {
 
-// Others than the thread, which waits, can close a descriptor or replace it.
+// Threads other than the one that waits can close a descriptor or replace it.
 bool CanOthersReplace(const Process& process) {
   return process.threads > 1 || process.has_unregistered_threads;
 }
@@ -28,9 +28,10 @@ bool IsReplaced(const Task& task, int number, int file) {
   return copy ? !IsSameFile(copy.get(), file) : errno == EBADF;
 }
 
-// Whether that has to be asked: the kernel takes a microsecond for each. It knows of all that has
-// become of a number; the shim does of what libc's calls have made of it. That is enough for epoll
-// sets, which streams and their like do not close, and for polls, whose result it does not touch.
+// Whether each number has to be looked at, for which the kernel takes a microsecond. The kernel
+// knows of all that has become of a number; the shim knows what libc's calls have made of it. The
+// shim's knowledge is enough for epoll sets, which streams and their like do not close, and for
+// polls, whose result it does not touch.
 bool MayHaveBeenReplaced(const Task& task) {
   const KeptFiles& kept = *task.kept;
   const DescriptorChanges& now = task.process->changes;
@@ -39,7 +40,7 @@ bool MayHaveBeenReplaced(const Task& task) {
   return asks_kernel ? kept.since != now : kept.since.by_calls != now.by_calls;
 }
 
-// Empty: none is.
+// Empty: no number is replaced.
 std::vector<bool> AreReplaced(const Task& task) {
   const KeptFiles& kept = *task.kept;
   if (!MayHaveBeenReplaced(task)) return {};

@@ -11,9 +11,9 @@
 
 namespace tcs {
 
-// A thread acts on a signal that stops it when it runs next. So each gets to run for that, and the
-// coordinator goes on when it has stopped. Only SIGSTOP is sure to stop, so what other signals do
-// to a thread that computes is seen at its dispatch.
+// A thread acts on a signal that stops it when it runs next. So each thread gets to run for that,
+// and the coordinator goes on when the thread has stopped. Only SIGSTOP is sure to stop, so what
+// other signals do to a thread that computes is seen at its dispatch.
 void ChildStops::LetStop(const Process& process) {
   std::vector<Task*> threads;
   bool certain = false, stops = false;
@@ -48,8 +48,9 @@ void ChildStops::Look(Process& process, EventTime when) {
   if (parent != nullptr) ChildChanged(*parent, process.pid, true, when);
 }
 
-// The kernel sends the parent its signal when one of the threads runs next: those that wait may do
-// that now, and are back in their waits; others when they are dispatched.
+// The kernel sends the parent its signal when one of the child's threads runs next. Threads that
+// wait may run for that now, and are back in their waits; other threads do so when they are
+// dispatched.
 void ChildStops::LetGoOn(const Process& process) {
   for (Task* task : process.robot->tasks) {
     if (task->process != &process) continue;

@@ -1,5 +1,5 @@
-// Processes that a signal stops, and that go on. Others see that at once, even if none of the
-// process's threads has its turn, and the parents learn of it.
+// Processes that a signal stops, and that go on. Other processes see the change at once, even if
+// none of the process's threads has its turn, and the parents learn of it.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -18,7 +18,7 @@ class ChildStops {
   ChildStops(RunState& run, Waker& waker, SignalWakes& wakes, ActiveThreads& active)
       : run_(run), waker_(waker), wakes_(wakes), active_(active) {}
 
-  // Has it stopped or gone on since the last look? Then its parent hears of it.
+  // If the process has stopped or gone on since the last look, its parent hears of it.
   void Look(Process& process, EventTime when);
   // No notification says that a process has been stopped from outside. So the processes whose
   // parents wait for such a stop are looked at.

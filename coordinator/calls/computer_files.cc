@@ -70,7 +70,7 @@ bool MayLeadThere(std::string_view path) {
   return path.substr(0, 5) == "/proc" || path.substr(0, 4) == "/sys";
 }
 
-// The plain name of the file; none: it is not in /proc or /sys.
+// The plain name of the file; none: the file is not in /proc or /sys.
 std::optional<std::string> NameIn(const TrappedCall& call) {
   const OpenCall open = OpenIn(call);
   auto name = NameAt(call.tid, open.name);
@@ -87,7 +87,8 @@ std::optional<std::string> NameIn(const TrappedCall& call) {
   return plain;
 }
 
-// What the host's names mean the same for as for this process.
+// Whether the host's names of processes, and of files, mean the same for the thread as for this
+// process.
 bool SeesSameProcesses(pid_t tid) {
   return LinkOf(fmt::format("/proc/{}/ns/pid", tid)) == LinkOf("/proc/self/ns/pid");
 }
@@ -101,7 +102,8 @@ std::optional<std::string> HostsText(const std::string& path) {
   return text;
 }
 
-// For reading only, from its beginning. Its name says what it is of (shm/computer_files.h).
+// A descriptor for reading only, at the file's beginning. The file's name says what the file is of
+// (shm/computer_files.h).
 UniqueFd FileWith(const std::string& text, const std::string& name) {
   const UniqueFd whole(memfd_create((shm::kComputerFile + name).c_str(), MFD_CLOEXEC));
   if (!whole) return UniqueFd();
@@ -120,7 +122,8 @@ std::vector<std::int64_t> BusyOf(const Robot& robot) {
   return busy_ns;
 }
 
-// Not that its thread sleeps at its gate: one that has yet to begin has not come to any wait.
+// Whether the thread sleeps at its gate does not count: a thread that has yet to begin has not come
+// to any wait.
 bool IsRunning(const Task& task, const Task& reader) {
   return &task == &reader || task.state == TaskState::kReady || task.state == TaskState::kHolding ||
          task.state == TaskState::kStarting;
@@ -221,7 +224,7 @@ std::optional<std::string> ComputerFiles::OfProcess(const Task& task,
                                          : of_status ? "status"
                                                      : "schedstat"));
   if (!of_host.has_value()) return std::nullopt;
-  // A thread has such a file under its own number, too; it is then its process's.
+  // A thread has such a file under its own number, too; the file is then that of its process.
   const Task* of = run_.table.Living(of_thread ? file.thread : file.process);
   const Process* process = of != nullptr ? of->process : run_.table.LivingProcess(file.process);
   if (process == nullptr) {
@@ -249,7 +252,7 @@ std::optional<std::string> ComputerFiles::OfProcess(const Task& task,
       .started_ns = run_.header->monotonic_offset_ns +
                     (of_thread && of != nullptr ? of->started_at : process->started_at).ns(),
       .state = state};
-  // Set costs are the program's own; which part of them the kernel took, the host says.
+  // Set costs are the program's own. Of other costs the host says which part the kernel took.
   const ProcessTicks ticks = TicksIn(*of_host);
   if (!run_.IsFixed() && ticks.user + ticks.system > 0) {
     facts.system_ns = static_cast<std::int64_t>(static_cast<double>(charged.ns()) *

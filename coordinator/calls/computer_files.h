@@ -1,6 +1,6 @@
-// Opens of the files in which programs read of their computer (computer/computer_file.h): what they
-// find in there is their robot's cores, and virtual time. An open by whatever means comes here: by
-// a raw call, from inside the C library, or by the shim, which makes such opens so that they are
+// Opens of the files in which programs read of their computer (computer/computer_file.h): programs
+// find their robot's cores in there, and virtual time. An open by whatever means comes here: by a
+// raw call, from inside the C library, or by the shim, which makes such opens so that they are
 // trapped. A file is made when it is opened, and stays as it was then; the shim opens it once more
 // for a program that goes back to its beginning.
 //

@@ -13,7 +13,7 @@ namespace tcs {
 
 class DatagramLog {
  public:
-  // What an earlier run has left there is removed.
+  // A file that an earlier run has left there is removed.
   void Open(const std::string& folder);
   void Write(VirtualTime sent, const std::string& sender, VirtualTime received,
              const std::string& receiver, const std::string& channel);

@@ -22,9 +22,9 @@ namespace {
 using shm::DatagramNotes;
 
 constexpr const char* kWrong = "datagrams that cannot be";
-// Of one address. Who lets more wait does not receive any more.
+// Of one address. A receiver that lets more datagrams wait does not receive any more.
 constexpr std::size_t kMostOnTheWay = 4096;
-// Who sends to ever other addresses is not followed beyond that.
+// A program that sends to ever other addresses is not followed beyond that.
 constexpr std::size_t kMostAddresses = 4096;
 // The kind of an address, beyond the numbers of robots.
 constexpr std::uint64_t kInternet = std::uint64_t{1} << 32;
@@ -57,8 +57,8 @@ bool IsRunName(std::string_view part) {
          part.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-// In words, for the label of what two programs send each other; the same in each run, so without
-// ${run} and ${loopback}.
+// The address in words, for the label of what two programs send each other. The text is the same in
+// each run, so it is without ${run} and ${loopback}.
 std::string TextOf(const DatagramNotes::Note& note) {
   if (const auto internet = InternetOf(note)) {
     return "UDP port " + std::to_string(internet->port);
@@ -113,8 +113,8 @@ DatagramQueues::Queue* DatagramQueues::QueueTo(const Address& to) {
   return queues_.size() < kMostAddresses ? &queues_[to] : nullptr;
 }
 
-// Where it is looked for what was sent to the address: with what is sent to any address of this
-// computer, where a socket listens on all of them and none on this one alone.
+// The place where datagrams to the address are looked for. If a socket listens on all addresses of
+// this computer, and none on this address alone, these datagrams are among those to any address.
 DatagramQueues::Address DatagramQueues::PlaceOf(const Address& to) const {
   const auto port = static_cast<std::uint16_t>(to.second);
   if (to.first != kInternet || !ports_of_all_.contains(port)) return to;
@@ -123,7 +123,7 @@ DatagramQueues::Address DatagramQueues::PlaceOf(const Address& to) const {
   return AddressAt(htonl(INADDR_LOOPBACK), port);
 }
 
-// A socket listens at that port of all addresses: what was sent to whichever is its.
+// A socket listens at that port of all addresses: a datagram to any of them is that socket's.
 void DatagramQueues::ListensOnAll(std::uint16_t port) {
   if (!ports_of_all_.insert(port).second) return;
   const Address place = AddressAt(htonl(INADDR_LOOPBACK), port);
@@ -202,7 +202,8 @@ void DatagramQueues::WorldReceived(std::size_t channel, const CommandSent& sent)
              run_.scenario.commands[channel].name);
 }
 
-// A full socket takes nothing more until it is read: lost is what was sent last before that.
+// A full socket takes nothing more until it is read: the lost datagrams are those that were sent
+// last before that.
 void DatagramQueues::DropLost(Queue& queue, std::uint16_t drops, VirtualTime at) {
   const std::uint16_t lost = drops - std::exchange(queue.drops, drops);
   const auto later =
@@ -213,7 +214,8 @@ void DatagramQueues::DropLost(Queue& queue, std::uint16_t drops, VirtualTime at)
   queue.waiting.erase(later - lost, later);
 }
 
-// The socket was empty then: what was sent before those that were taken met nobody who listened.
+// The socket was empty then: datagrams that were sent before the taken ones met nobody who
+// listened.
 void DatagramQueues::DropNeverThere(Queue& queue, std::uint16_t taken, VirtualTime at) {
   const auto later =
       std::ranges::find_if(queue.waiting, [at](const Sent& sent) { return sent.at > at; });
@@ -273,7 +275,7 @@ const char* DatagramQueues::TakeNotes(const Task& task, VirtualTime until) {
   const auto who = answers_.WhoIs(task);
   for (std::uint32_t i = 0; i < count; ++i) {
     const DatagramNotes::Note note = notes.notes[i];
-    std::atomic_signal_fence(std::memory_order_seq_cst);  // what is checked is not read again
+    std::atomic_signal_fence(std::memory_order_seq_cst);  // a checked value is not read again
     if (note.size > DatagramNotes::kMostBytes || note.what > DatagramNotes::What::kTaken ||
         note.count > kMostOnTheWay || note.activation > shm::Receipts::kMost) {
       return kWrong;
@@ -359,7 +361,7 @@ std::vector<std::string> DatagramQueues::WhatNobodyHeard() const {
              IN_LOOPBACKNET ||
          multicast_.contains(port));
     for (const Flow& flow : queue.flows) {
-      // What the world sends to nobody is warned of (World::UnheardSensors).
+      // World::UnheardSensors warns of datagrams that the world sends to nobody.
       if (!answers_.WhoIs(flow.sender).has_value()) continue;
       if (queue.has_reader) {
         heard.push_back({names[static_cast<std::size_t>(queue.reader.client)], flow.channel});

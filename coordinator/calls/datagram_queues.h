@@ -1,14 +1,15 @@
 // The UDP and UNIX datagrams that wait for clients: which are on their way to which address, who
 // has taken which of them, and which were lost because a socket was full. Datagrams of one address
-// are received in the order in which they were sent there; that is how the ends are told.
+// are received in the order in which they were sent there; this order tells which sending and which
+// receiving belong together.
 //
-// Of each client it keeps what it was sent (answers/client_figures.h), and it tells the book of
+// The class keeps what each client was sent (answers/client_figures.h). It tells the book of
 // answers what threads take and command, and the log of datagrams of both ends.
 //
-// What is not seen: raw calls, descriptors that somebody outside has made, ports at which multicast
-// comes in, and whether somebody outside received what was sent to the address of an interface. By
-// DDS's own protocol participants look for each other where nobody may be. For the coordinator's
-// thread only.
+// The class does not see raw calls, descriptors that somebody outside has made, ports at which
+// multicast comes in, and whether somebody outside received a datagram that was sent to the address
+// of an interface. By DDS's own protocol participants look for each other where nobody may be. For
+// the coordinator's thread only.
 #pragma once
 
 #include <cstddef>
@@ -32,29 +33,30 @@ namespace tcs {
 
 class DatagramQueues final : public DatagramWatch {
  public:
-  // Both outlive this. With a feed that is not open nothing is kept.
+  // All arguments outlive this. With a feed that is not open nothing is kept.
   DatagramQueues(RunState& run, AnswerFeed& answers, DatagramLog& log);
 
-  // Is told of DDS samples that threads take. Null: nobody; it outlives this.
+  // `samples` is told of DDS samples that threads take, and outlives this. Null: nobody is told.
   void Tell(SampleFeed* samples) { samples_ = samples; }
-  // What is sent to that address is one of those commands, as the scenario numbers them: the
-  // coordinator receives it.
+  // A datagram to that address is that command, as the scenario numbers commands: the coordinator
+  // receives the datagram.
   void AddCommandAddress(const shm::ReceiverAddress& address, std::size_t command);
 
   void WorldSent(const std::string& channel, const shm::ReceiverAddress& to,
                  VirtualTime at) override;
   void WorldReceived(std::size_t channel, const CommandSent& sent) override;
-  // What the thread, which has stopped, has noted until then. Null; or what of it cannot be, as
-  // SlotCheck has it.
+  // Takes the notes of the thread, which has stopped, until `until`. Null, or what in the notes is
+  // impossible, as in SlotCheck.
   const char* TakeNotes(const Task& task, VirtualTime until);
 
-  // The run is over: what waits was never read. By client, in the order of the scenario.
+  // The run is over: datagrams that still wait were never read. The figures are by client, in the
+  // order of the scenario.
   std::map<int, std::vector<InputFigures>> Conclude(VirtualTime end);
-  // What clients sent to where nobody has received anything, in sentences.
+  // The datagrams that clients sent to addresses where nobody has received anything, in sentences.
   std::vector<std::string> WhatNobodyHeard() const;
 
  private:
-  // What somebody sends to one address.
+  // The datagrams of one sender over one channel, to one address.
   struct Flow {
     std::string sender, channel;
     int sensor = -1;  // as AnswerBook::Taken has it
@@ -65,7 +67,7 @@ class DatagramQueues final : public DatagramWatch {
   struct Sent {
     VirtualTime at;
     std::int64_t sampled_ns = -1;  // as AnswerBook::Taken has it
-    Lineage lineage{};             // what its sender knew of
+    Lineage lineage{};             // what the sender knew of
     Flow* flow = nullptr;          // of its queue
   };
   struct Queue {
@@ -73,7 +75,7 @@ class DatagramQueues final : public DatagramWatch {
     std::uint16_t drops = 0;  // as the kernel last counted them
     AnswerBook::Who reader;   // the last
     bool has_reader = false;
-    std::string of_programs;  // the channel of what they send there; empty: they have sent nothing
+    std::string of_programs;  // the channel of what programs send there; empty: nothing was sent
     std::deque<Flow> flows;   // a few
   };
   using Address = std::pair<std::uint64_t, std::uint64_t>;  // the kind, and whose; the rest

@@ -1,5 +1,6 @@
 // Programs that set the date of their computer (CLOCK_REALTIME), as `date` or a time daemon does.
-// Waits and timers that end at a date move with it; what was given as a time from now on does not.
+// Waits and timers that end at a date move with it; waits and timers that were given as a time from
+// now on do not.
 //
 // For the coordinator's thread only.
 #pragma once

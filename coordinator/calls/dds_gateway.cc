@@ -30,7 +30,7 @@ dds::Speaker DdsGateway::WhoIs(dds::Hub::Number number) const {
   return {};
 }
 
-// Its number in the scenario.
+// The number of the process's robot in the scenario.
 std::size_t DdsGateway::RobotOf(dds::Hub::Number number) const {
   const auto process = std::ranges::find_if(
       joined_, [number](const Process* one) { return one->dds_number == number; });
@@ -51,7 +51,7 @@ void DdsGateway::TakeOwnMessages() {
   const VirtualTime until = std::min(run_.root.Least(), run_.end);
   if (RobotTime(hub_.OwnDueNs()) > until) return;
   if (world_.present() && !run_.IsInGrace()) world_.ReceiveUntold(until);
-  // What was for none of the channels, or is from after their end.
+  // Drops messages that were for none of the channels, or are from after the channels' end.
   while (ends_.Take(until.ns()).has_value()) {
   }
   ShowDeliverersTheirDeadlines();
@@ -91,7 +91,7 @@ void DdsGateway::AwaitDeliverer(Task& task, VirtualTime deadline) {
   inheritance_.Find(*process.deliverer);
 }
 
-// What is wrong is said once of each process: it may send as often as it likes.
+// A wrong message is warned of once for each client: a process may send as often as it likes.
 void DdsGateway::Send(Process& process, std::size_t bytes, const Task& by) {
   const VirtualTime at = by.reached;
   const std::string wrong = hub_.Send(process.dds_number, bytes, at.ns(), by.charged.ns());
@@ -102,7 +102,7 @@ void DdsGateway::Send(Process& process, std::size_t bytes, const Task& by) {
   ShowDeliverersTheirDeadlines();
 }
 
-// It says so itself on its stderr, which is a file here that nobody may look into.
+// The process says so itself on its stderr, which is a file here that nobody may look into.
 void DdsGateway::WarnOfSockets(const Process& process, shm::WhySockets why) {
   if (run_.options.output_directory.empty()) return;
   const char* reason = "libtcs_dds.so cannot be loaded into it";
@@ -173,7 +173,7 @@ void DdsGateway::AwaitMessages(Task& task) {
   ReleaseThoseAwaitingDeliverer(process, {task.reached});
 }
 
-// Whether what is due at `now` is being handed over, or is about to be.
+// Whether the messages that are due at `now` are being handed over, or are about to be.
 bool DdsGateway::IsDelivering(const Process& process, VirtualTime now) const {
   const Task* deliverer = process.deliverer;
   if (deliverer == nullptr) return false;
@@ -193,7 +193,7 @@ void DdsGateway::ReleaseThoseAwaitingDeliverer(const Process& process, EventTime
   }
 }
 
-// Those that sent to a process more than it can take at once.
+// Releases the threads that sent to a process more than it can take at once.
 void DdsGateway::ReleaseThoseAwaitingRoom(std::uint32_t number, EventTime when) {
   if (waker_.counts().for_room() == 0 || hub_.IsFull(number)) return;
   for (Task& task : run_.table.tasks()) {
@@ -219,8 +219,8 @@ void DdsGateway::ShowDeliverersTheirDeadlines() {
   }
 }
 
-// It is stopped as a whole from when a signal that does so is there, though its threads notice one
-// after another.
+// A process is stopped as a whole as soon as a signal that stops it is there, though its threads
+// notice one after another.
 void DdsGateway::NoteWhetherStopped(const Process& process, VirtualTime at) {
   if (process.dds_number == 0) return;
   bool stopped = false;

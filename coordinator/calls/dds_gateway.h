@@ -1,9 +1,9 @@
 // Programs that speak DDS: which ones have joined, what they send each other, and each program's
 // deliverer, the thread that takes its messages in (shm/dds_exchange.h). The hub keeps messages in
-// order; this class has threads wait and go on for it. The world's channels on DDS are part of it,
-// too.
+// order; this class makes threads wait and go on for the hub. The world's channels on DDS are part
+// of it, too.
 //
-// For the coordinator's thread only. Trusts nothing that processes say; what is wrong is warned of
+// For the coordinator's thread only. Trusts nothing that processes say, and warns of what is wrong
 // once per client.
 #pragma once
 
@@ -40,18 +40,20 @@ class DdsGateway {
   // The coordinator's own endpoints, for the world's channels on DDS.
   dds::OwnEndpoints& ends() { return ends_; }
   const DdsRecords& records() const { return records_; }
-  // The world, if there is one, takes what is for it, as far as nothing can come before that any
-  // more.
+  // The world, if there is one, takes the messages that are for it, as far as no earlier message
+  // can come any more.
   void TakeOwnMessages();
 
-  // Messages between robots go over its links. It outlives this.
+  // Messages between robots go over the links of `wire`, which outlives this.
   void UseNetwork(Wire& wire);
 
-  // What a thread notifies of DDS; what it asks for is in its reply, or it waits.
+  // Handles a thread's notification of DDS: the thread gets what it asks for in its reply, or
+  // waits.
   void Handle(Task& task, const shm::Notification& note, VirtualTime deadline);
   // The process has died, or executes another program.
   void Leave(Process& process, EventTime when);
-  // Others miss a stopped program when its leases are over. Looks whether it is.
+  // Other programs miss a stopped program when its leases are over. Looks whether the process is
+  // stopped.
   void NoteWhetherStopped(const Process& process, VirtualTime at);
 
   // The memory through which the process exchanges messages; -1 if it has not joined.

@@ -1,5 +1,5 @@
-// What a run keeps of what goes over its DDS topics: topics.json, messages.csv, and with
-// RunOptions::record a bag (docs/RESULTS.md), which others have a part in, too.
+// The records that a run keeps of its DDS topics: topics.json, messages.csv, and with
+// RunOptions::record a bag (docs/RESULTS.md), to which other parts write, too.
 //
 // For the coordinator's thread only. Errors are one sentence; empty is success.
 #pragma once
@@ -32,7 +32,7 @@ class DdsRecords {
   void UseAnswers(AnswerFeed& answers);
   const SampleFeed* samples() const { return samples_ ? &*samples_ : nullptr; }
   SampleFeed* samples() { return samples_ ? &*samples_ : nullptr; }
-  // Once the run's header has its times. What an earlier run has left is removed.
+  // Once the run's header has its times. The files that an earlier run has left are removed.
   [[nodiscard]] std::string Open();
   // Endpoints may have come since the last call: a recording reads their topics. Not from within
   // the hub.

@@ -17,7 +17,7 @@ bool IsReady(int fd, std::uint32_t events) {
   return poll(&probe, 1, 0) > 0;
 }
 
-// Of a file of which something is hidden.
+// The events that are seen of a file of which something is hidden.
 std::uint32_t SeenOf(OutsideWaits::Hidden hidden) {
   return hidden == OutsideWaits::Hidden::kAll ? 0 : std::uint32_t{EPOLLOUT};
 }
@@ -50,8 +50,8 @@ void DescriptorWaits::Add(const Task& task, Copy copy, const Subject& subject,
   watched.asked.push_back(copy.asked);
 }
 
-// The set itself would tell of what is hidden, too. Of the others, what is told of once only, and
-// is there already, the thread has been told of.
+// The set itself would tell of hidden events, too. If another member tells of an event once only,
+// and the event is there already, the thread has been told of it.
 void DescriptorWaits::AddMembers(const Task& task, int set, const Subject& subject,
                                  awaited::Descriptors& watched) {
   constexpr std::uint32_t kAsked = EPOLLIN | EPOLLOUT | EPOLLPRI | EPOLLRDHUP | EPOLLRDNORM;
@@ -59,7 +59,7 @@ void DescriptorWaits::AddMembers(const Task& task, int set, const Subject& subje
     UniqueFd member = CopyOfDescriptor(*task.process, entry.fd);
     const std::uint32_t events = entry.events & kAsked;
     if (!member || events == 0 || outside_.IsHidden(member.get(), task.reached)) continue;
-    // What tells each time is told of once more by the next look.
+    // A member that tells of its event each time does so once more in the next look.
     const bool tells_once = (entry.events & EPOLLET) != 0;
     if (!Arm(member.get(), events | (tells_once ? std::uint32_t{EPOLLET} : 0U), subject, watched))
       continue;
@@ -87,8 +87,8 @@ awaited::Descriptors DescriptorWaits::Watch(const Task& task, std::vector<Copy> 
   return watched;
 }
 
-// Who polls has looked for the files by their numbers, and found nothing. What is there already in
-// one that is no longer under its number is no news to it, as the kernel has it.
+// A thread that polls has looked for the files by their numbers, and found nothing. An event that
+// is there already in a file no longer under its number is no news to the thread, as in the kernel.
 awaited::Descriptors DescriptorWaits::WatchKept(Task& task) {
   KeptFiles kept = std::move(*std::exchange(task.kept, std::nullopt));
   awaited::Descriptors watched{.fds = std::move(kept.files),
@@ -166,11 +166,11 @@ awaited::Descriptors DescriptorWaits::WatchAsAsked(Task& task, const shm::Notifi
   return watched;
 }
 
-// The client shares the open file, so closing our descriptor leaves it in the epoll set until the
-// client closes it, too. That is what we want: the next wait for it, under the same number of ours,
-// only has to arm it again. What fires meanwhile is of a wait that is over (Tag::kAwaited). But a
-// client's epoll set with a signalfd in it must not be polled by us when its wait is over: we have
-// other signals, and it would forget that there is one.
+// The client shares the open file, so closing our descriptor leaves the file in the epoll set until
+// the client closes it, too. We want this: the next wait for the file, under the same number of
+// ours, only has to arm it again. An event that fires meanwhile is of a wait that is over
+// (Tag::kAwaited). But a client's epoll set with a signalfd in it must not be polled by us when its
+// wait is over: we have other signals, and the set would forget that there is one.
 void DescriptorWaits::Leave(const awaited::Descriptors& watched) {
   for (const UniqueFd& fd : watched.members) reactor_.Remove(fd.get());
   const bool forgets = watched.has_terminal || watched.signals != 0 || watched.is_edge_armed;

@@ -21,37 +21,39 @@ class DescriptorWaits {
  public:
   DescriptorWaits(Reactor& reactor, OutsideWaits& outside) : reactor_(reactor), outside_(outside) {}
 
-  // From now on the descriptors of the thread's process with these numbers are watched. One that
-  // cannot be watched is left out: a file is always ready, and a closed descriptor reports nothing.
+  // From now on the descriptors of the thread's process with these numbers are watched. A
+  // descriptor that cannot be watched is left out: a file is always ready, and a closed descriptor
+  // reports nothing.
   awaited::Descriptors Watch(const Task& task, const shm::WaitFd* fds, std::size_t count);
-  // The same with copies that have been made.
+  // The same with copies of the descriptors that have been made already.
   struct Copy {
     shm::WaitFd asked;
     UniqueFd fd;
   };
   awaited::Descriptors Watch(const Task& task, std::vector<Copy> copies);
-  // Once more the files that were kept for the thread, which there must be.
+  // Watches once more the files that were kept for the thread. There must be such files.
   awaited::Descriptors WatchKept(Task& task);
-  // What the notification asks for: whether one event is for one waiter, and whether signals end
-  // it.
+  // Watches as the notification asks: whether one event is for one waiter, and whether signals end
+  // the wait.
   awaited::Descriptors WatchAsAsked(Task& task, const shm::Notification& note);
   // The wait is a new one, behind all others that want to take from the same descriptor.
   void GoBehind(Task& task, awaited::Descriptors& watched);
-  // Something was asked for by what waiting threads may wait for: it is hidden from then on.
+  // A request was sent by a file that waiting threads may wait for: what comes by the file is
+  // hidden from then on.
   void BeginAllAgain(TaskTable& table);
-  // What was hidden from the waiting thread may be no more (outside_waits.h).
+  // Events that were hidden from the waiting thread may be hidden no more (outside_waits.h).
   void LookAgain(Task& task);
   // The wait is over.
   void Leave(const awaited::Descriptors& watched);
 
-  // By which the reactor tells of its events.
+  // The subject by which the reactor tells of the wait's events.
   static Subject SubjectOf(const Task& task, const awaited::Descriptors& watched);
 
  private:
   void BeginAgain(Task& task);
   void Add(const Task& task, Copy copy, const Subject& subject, awaited::Descriptors& watched);
   void AddMembers(const Task& task, int set, const Subject& subject, awaited::Descriptors& watched);
-  // False if it cannot be watched.
+  // False if the descriptor cannot be watched.
   bool Arm(int fd, std::uint32_t events, const Subject& subject, awaited::Descriptors& watched);
 
   Reactor& reactor_;

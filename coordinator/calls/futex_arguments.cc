@@ -23,7 +23,7 @@ bool Wakes(int command) {
   return command == FUTEX_WAKE || command == FUTEX_WAKE_BITSET || HasSecondWord(command);
 }
 
-// 0, or why there can be no futex at the address. Nobody reads a private one that is only woken.
+// 0, or why there can be no futex at the address. A private futex that is only woken is not read.
 std::int64_t WrongAddress(const Task& task, std::uint64_t address, bool is_read) {
   if (address % sizeof(std::uint32_t) != 0) return -EINVAL;
   if (static_cast<std::int64_t>(address) < 0) return -EFAULT;
@@ -49,7 +49,7 @@ std::int64_t WrongFutexCall(const Task& task, const TrappedCall& call, int comma
   if (requeues && (static_cast<int>(call.args[2]) < 0 || static_cast<int>(call.args[3]) < 0)) {
     return -EINVAL;
   }
-  // Its owner is looked for first, and is nobody there.
+  // The kernel looks for the lock's owner first, and finds none at a wrong address.
   if (command == FUTEX_UNLOCK_PI) return 0;
   const bool is_shared = (call.args[1] & FUTEX_PRIVATE_FLAG) == 0;
   if (const auto wrong = WrongAddress(task, call.args[0], Wakes(command) && is_shared);

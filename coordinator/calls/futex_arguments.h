@@ -1,4 +1,5 @@
-// What the kernel says of a futex call before it looks at the word, in its order.
+// The errors that the kernel finds in a futex call before it looks at the word, in the kernel's
+// order.
 #pragma once
 
 #include <cstdint>

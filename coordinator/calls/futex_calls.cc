@@ -11,10 +11,11 @@ namespace tcs {
 
 namespace {
 
-// The kernel looks at how many it was to wake only when it has woken one.
+// The kernel looks at how many threads it was to wake only when it has woken one.
 int AtLeastOne(std::uint64_t count) { return std::max(1, static_cast<int>(count)); }
 
-// The kernel's word of a lock, which programs change, too, by themselves.
+// Commands by which the kernel changes a word, as that of a lock, which programs change, too, by
+// themselves.
 bool ChangesWord(int command) {
   return command == FUTEX_WAKE_OP || command == FUTEX_LOCK_PI || command == FUTEX_LOCK_PI2 ||
          command == FUTEX_TRYLOCK_PI || command == FUTEX_UNLOCK_PI ||
@@ -76,8 +77,8 @@ std::int64_t FutexCalls::CarryOutWake(const Process& process, const TrappedCall&
       command == FUTEX_WAKE ? FutexWords::kAnyBit : static_cast<std::uint32_t>(call.args[5]), when);
 }
 
-// A core that is ahead must not wake whom another one may wake, or a deadline end, before. The call
-// is made again once that is over.
+// A core that is ahead must not wake a thread that another core may wake, or whose wait a deadline
+// may end, before. The call is made again once that is over.
 bool FutexCalls::HoldsToWake(Task& task, const TrappedCall& call, int command) {
   const bool wakes = command == FUTEX_WAKE || command == FUTEX_WAKE_BITSET ||
                      command == FUTEX_WAKE_OP || command == FUTEX_REQUEUE ||
@@ -85,7 +86,7 @@ bool FutexCalls::HoldsToWake(Task& task, const TrappedCall& call, int command) {
                      command == FUTEX_UNLOCK_PI;
   if (!wakes || run_.IsCallback() || task.reached <= run_.root.WriteSafe(task.cpu->leaf))
     return false;
-  // Nobody waits: then nobody can be woken too early.
+  // No thread waits, so none can be woken too early.
   if (command != FUTEX_WAKE_OP &&
       words_.MostUrgent(words_.WokenKeyFor(*task.process, call, call.args[0]),
                         FutexWords::kAnyBit) == nullptr) {

@@ -1,5 +1,5 @@
-// The futex calls that the kernel hands over: all waiting of a process's threads for each other
-// ends there.
+// The futex calls that the kernel hands over: in the end, a process's threads wait for each other
+// by them only.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -18,8 +18,8 @@ namespace tcs {
 
 class FutexCalls {
  public:
-  // `stands_still` has no thread run, from now on, that could change a word of the process's, or,
-  // if it is null, of any one's, while it is changed here.
+  // `stands_still` makes sure that, from now on, no thread runs that could change a word of the
+  // process (null: of any process) while FutexCalls changes the word.
   FutexCalls(RunState& run, Waker& waker, FutexWords& words, LockFutexes& locks,
              std::function<void(Process*)> stands_still)
       : run_(run),
@@ -31,7 +31,7 @@ class FutexCalls {
   // Carries the call out, or has the thread wait; task.trap_result is what it returns.
   void Handle(Task& task, const TrappedCall& call);
   // FUTEX_WAKE and FUTEX_WAKE_BITSET, from any thread of the process: the number of threads woken;
-  // none for other commands.
+  // 0 for other commands.
   std::int64_t CarryOutWake(const Process& process, const TrappedCall& call, EventTime when);
 
  private:

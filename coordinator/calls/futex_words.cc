@@ -91,12 +91,14 @@ std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) 
   if (const auto wrong = Deadline(task, call, command, timeout, &deadline); wrong != 0) {
     return wrong;
   }
-  // Nobody has run since the caller looked: this is the check that the kernel makes under its lock.
+  // No thread has run since the caller looked: this comparison is the check that the kernel makes
+  // under its lock.
   if (value != static_cast<std::uint32_t>(call.args[2])) return -EAGAIN;
   const Task* joined = EndsAt(*task.process, call.args[0], value);
   if (joined != nullptr && joined->state == TaskState::kDead) {
-    // A join: the thread has said that it ends, and the kernel clears the word when it has gone. If
-    // it has gone and the word is still the same, that is only a number like the thread's.
+    // A join: the thread has said that it ends, and the kernel clears the word when the thread has
+    // gone. If the thread has gone and the word is still the same, the word is only a number like
+    // the thread's.
     for (int turn = 0;; ++turn) {
       const char state = ThreadState(joined->tid);
       if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
@@ -120,8 +122,8 @@ void FutexWords::Enter(Task& task, awaited::Futex wait, VirtualTime deadline, bo
               {.what = wait, .deadline = deadline, .is_in_trapped_call = true, .is_date = is_date});
 }
 
-// The joiner finds the word as it was: whether the kernel has cleared it is seen when it waits
-// again.
+// The joiner finds the word as it was: whether the kernel has cleared it is seen when the joiner
+// waits again.
 void FutexWords::WakeAtEndOf(const Task& ended, EventTime when) {
   constexpr TrappedCall kKernelsWake{.args = {0, FUTEX_WAKE}};
   if (ended.end_word == 0 || ended.process->dead) return;

@@ -1,4 +1,4 @@
-// Waits at futex words, and wakes there: what all futex commands are made of. A waiter sleeps to
+// Waits at futex words, and wakes there, of which all futex commands are made. A waiter sleeps to
 // its virtual deadline, and is woken at its waker's virtual time; wakes go to the most urgent
 // waiter, among equals to the one that waits longest.
 //
@@ -27,9 +27,9 @@ class FutexWords {
   // FUTEX_WAIT and FUTEX_WAIT_BITSET; futex_waitv.
   std::int64_t Wait(Task& task, const TrappedCall& call, int command);
   std::int64_t WaitForAny(Task& task, const TrappedCall& call);
-  // A wait begins, after the table knows where.
+  // A wait begins; the table knows already at which word.
   void Enter(Task& task, awaited::Futex wait, VirtualTime deadline, bool is_date);
-  // Wakes at most so many, one of whose bits is in `bits`. Returns how many.
+  // Wakes at most `most` threads that wait with one of the bits in `bits`. Returns how many.
   std::int64_t Wake(const FutexKey& key, std::int64_t most, std::uint32_t bits, EventTime when);
 
   // The wake that the kernel makes at a thread's end, at the word that it clears then.
@@ -37,10 +37,10 @@ class FutexWords {
 
   // Null: no thread waits there.
   Task* MostUrgent(const FutexKey& key, std::uint32_t bits);
-  // Whether its timeout is a date.
+  // Whether the call's timeout is a date.
   static bool IsDate(const TrappedCall& call, int command);
-  // From an absolute or relative timeout, if the call has one, to a deadline on its virtual CPU.
-  // 0, or the call's error.
+  // Converts an absolute or relative timeout, if the call has one, to a deadline on the thread's
+  // virtual CPU. 0, or the call's error.
   std::int64_t Deadline(const Task& task, const TrappedCall& call, int command,
                         const timespec& timeout, VirtualTime* deadline);
   static FutexKey KeyFor(const Task& task, const TrappedCall& call, std::uint64_t address);
@@ -53,9 +53,9 @@ class FutexWords {
   FutexTable& table() { return table_; }
 
  private:
-  // The thread of the process at whose end the kernel changes this word; null: none is known. That
-  // is the word which the kernel clears then, or one that holds the thread's id: a robust lock, or
-  // the former where the kernel does not tell its address.
+  // The thread of the process at whose end the kernel changes this word; null: none is known. The
+  // word is the one that the kernel clears then, or one that holds the thread's id: a robust lock,
+  // or the cleared word where the kernel does not tell its address.
   const Task* EndsAt(const Process& process, std::uint64_t address, std::uint32_t value) const;
 
   RunState& run_;

@@ -43,7 +43,7 @@ bool MaySignal(const Credentials& sender, pid_t receiver) {
   return owner == sender.real_uid || owner == sender.effective_uid;
 }
 
-// As kill would, with the caller as the sender.
+// Sends the signal as kill would, with the caller as the sender.
 bool SendAs(pid_t caller, const Credentials& sender, pid_t to, int signal) {
   siginfo_t info{};
   info.si_signo = signal;
@@ -59,7 +59,7 @@ bool GuardedCalls::IsGuarded(pid_t pid) const {
   return std::find(guarded_.begin(), guarded_.end(), pid) != guarded_.end();
 }
 
-// As kill understands it, less what concerns one process only.
+// `receiver` is as kill understands it, except for the number of one process.
 bool GuardedCalls::MeansGuarded(pid_t caller, pid_t receiver) const {
   if (receiver == -1) return true;
   const pid_t group = receiver == 0 ? getpgid(caller) : -receiver;
@@ -67,8 +67,8 @@ bool GuardedCalls::MeansGuarded(pid_t caller, pid_t receiver) const {
                      [group](pid_t pid) { return getpgid(pid) == group; });
 }
 
-// In the caller's stead: to those of the run whom it means. So -1 is everybody on the robots, as
-// it would be there.
+// Sends the signal in the caller's stead, to the processes of the run that `receiver` means. So -1
+// means all processes on the robots, as it would there.
 std::int64_t GuardedCalls::SignalOurs(pid_t caller, pid_t receiver, int signal) const {
   if (signal < 0 || signal >= _NSIG) return -EINVAL;
   const Credentials sender = ReadCredentials(caller);
@@ -83,7 +83,7 @@ std::int64_t GuardedCalls::SignalOurs(pid_t caller, pid_t receiver, int signal) 
   return sent ? 0 : found ? -EPERM : -ESRCH;
 }
 
-// What the call returns without the kernel's carrying it out; none if it may.
+// The result of a call that the kernel must not carry out; none if the kernel may carry it out.
 std::optional<std::int64_t> GuardedCalls::InsteadOfKernel(const TrappedCall& call) const {
   constexpr std::uint64_t kSetOwnerEx = 15;  // F_SETOWN_EX
   const auto refused_if = [](bool refused) -> std::optional<std::int64_t> {
@@ -100,7 +100,7 @@ std::optional<std::int64_t> GuardedCalls::InsteadOfKernel(const TrappedCall& cal
     case SYS_pidfd_getfd:
     case SYS_process_madvise:
       return refused_if(IsGuarded(ProcessOfFd(call.tid, first)));
-    case SYS_ptrace:  // its parent would be told of each signal, and does not ask
+    case SYS_ptrace:  // the parent would be told of each signal, and does not ask
       return refused_if(call.args[0] == PTRACE_TRACEME &&
                         IsGuarded(ParentOf(ProcessOfThread(call.tid))));
     case SYS_fcntl: {
@@ -146,7 +146,7 @@ bool GuardedCalls::Continue(const Task& task) const {
   if (call.id == task.trap_id && call.listener == task.trap_listener) {
     return LetThrough(call);
   }
-  return ContinueTrapped(task.trap_listener, task.trap_id);  // one of futex
+  return ContinueTrapped(task.trap_listener, task.trap_id);  // a futex call
 }
 
 }  // namespace tcs

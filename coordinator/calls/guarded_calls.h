@@ -1,6 +1,6 @@
 // Calls that could do something to tcsim's own processes, and that no filter can judge
-// (os/protection.h): signals to whole groups, and what names a process by a descriptor. Clients act
-// as the same user, so the kernel would let them.
+// (os/protection.h): signals to whole groups, and calls that name a process by a descriptor.
+// Clients act as the same user, so the kernel would let them.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -20,16 +20,16 @@ namespace tcs {
 
 class GuardedCalls {
  public:
-  // tcsim's own processes, and what tells which processes are brokers beside programs: no signal is
-  // meant for brokers.
+  // `own`: tcsim's own processes. `is_beside`: whether a process is a broker beside a program; no
+  // signal is meant for brokers.
   void Guard(std::vector<pid_t> own, std::function<bool(pid_t)> is_beside) {
     guarded_ = std::move(own);
     is_beside_ = std::move(is_beside);
   }
   const std::vector<pid_t>& guarded() const { return guarded_; }
 
-  // The kernel carries the call out, unless it is about one of them. False if the thread has left
-  // the call.
+  // The kernel carries the call out, unless the call is about one of tcsim's own processes. False
+  // if the thread has left the call.
   bool LetThrough(const TrappedCall& call) const;
   // The same for the call in which the task has stopped.
   bool Continue(const Task& task) const;

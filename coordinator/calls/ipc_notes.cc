@@ -32,11 +32,11 @@ const char* TakeIpcNotes(Task& task, shm::RunMemory& memory, bool date_was_set) 
   const std::int64_t now_ns = origin_ns + OwnNow(task).ns();
   for (std::uint32_t i = 0; i < count; ++i) {
     const shm::IpcNote note = slot.ipc_notes[i];
-    std::atomic_signal_fence(std::memory_order_seq_cst);  // what is checked is not read again
+    std::atomic_signal_fence(std::memory_order_seq_cst);  // a checked value is not read again
     if (!IsObject(note.object) || note.event > IpcEvent::kRemoved) return kWrongTimes;
     const bool is_possible =
         note.at_ns >= origin_ns && note.at_ns - origin_ns <= task.grant.most_shown_ns;
-    if (!is_possible && !date_was_set) return kWrongTimes;  // else it may be of another date
+    if (!is_possible && !date_was_set) return kWrongTimes;  // else the note may be of another date
     shm::IpcPlace* place = shm::TakeIpcPlace(memory.ipc_times, note.object);
     if (place == nullptr) continue;
     if (note.event == IpcEvent::kRemoved) {

@@ -1,9 +1,10 @@
 // Trapped calls that have waited for files which are no longer under their numbers. The kernel
-// would carry such a call out on what its number means now, so it is carried out here, on the
-// coordinator's copy of the file; and waits again where there is nothing for it after all.
+// would carry such a call out on the file that its number means now, so the call is carried out
+// here, on the coordinator's copy of the file. The call waits again where there is nothing for it
+// after all.
 //
-// Calls on terminals are left to the kernel. What is sent carries the coordinator's credentials
-// where the program names none.
+// Calls on terminals are left to the kernel. Messages that are sent carry the coordinator's
+// credentials where the program names none.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -18,8 +19,8 @@ class KeptCalls {
   KeptCalls(Waker& waker, DescriptorWaits& descriptors)
       : waker_(waker), descriptors_(descriptors) {}
 
-  // The thread is about to go on, by its trapped call's result or the kernel's. True: it waits
-  // again instead.
+  // The thread is about to go on, by its trapped call's result or the kernel's. True: the thread
+  // waits again instead.
   bool WaitsAgain(Task& task);
 
  private:

@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t kMostBytes = 1 << 20;  // of a stream at a time, and of any message
 constexpr std::size_t kMostControl = 1 << 16;
 
-// For as long as it lives, calls on the file do not wait.
+// As long as a NonBlocking lives, calls on the file do not wait.
 class NonBlocking {
  public:
   explicit NonBlocking(int file) : file_(file), flags_(fcntl(file, F_GETFL)) {
@@ -102,7 +102,7 @@ std::size_t BytesOf(const std::vector<iovec>& buffers) {
   return bytes;
 }
 
-// Without the first `bytes`.
+// Leaves out the first `bytes`.
 void Skip(std::vector<iovec>& buffers, std::size_t bytes) {
   for (iovec& buffer : buffers) {
     const std::size_t part = std::min(bytes, buffer.iov_len);
@@ -118,7 +118,7 @@ bool IsSocket(int file) {
   return getsockopt(file, SOL_SOCKET, SO_TYPE, &type, &size) == 0;
 }
 
-// Each descriptor that has come with a message: the program gets it, under a number of its own.
+// The program gets each descriptor that has come with a message, under a number of its own.
 void HandOver(const Task& task, msghdr& received, bool on_exec) {
   for (cmsghdr* part = CMSG_FIRSTHDR(&received); part != nullptr;
        part = CMSG_NXTHDR(&received, part)) {
@@ -134,7 +134,8 @@ void HandOver(const Task& task, msghdr& received, bool on_exec) {
   }
 }
 
-// The other way: copies of the program's own, which live as long as `copies`.
+// The other way: the message takes copies of the program's own descriptors along, which live as
+// long as `copies`.
 bool TakeAlong(const Task& task, msghdr& sent, std::vector<UniqueFd>& copies) {
   for (cmsghdr* part = CMSG_FIRSTHDR(&sent); part != nullptr; part = CMSG_NXTHDR(&sent, part)) {
     if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_RIGHTS) continue;

@@ -1,4 +1,4 @@
-// What a trapped call reads or writes, on the coordinator's copy of its file (kept_calls.h).
+// Reads and writes of trapped calls, on the coordinator's copies of their files (kept_calls.h).
 //
 // For the coordinator's thread only.
 #pragma once
@@ -12,7 +12,8 @@ namespace tcs {
 
 class KeptTransfers {
  public:
-  // What the call returns; -EAGAIN: it has to wait for more. What it accepts is task.trap_file.
+  // The result of the call; -EAGAIN: the call has to wait for more. A socket that the call accepts
+  // is task.trap_file.
   static std::int64_t CarryOut(Task& task, const TrappedCall& call);
 };
 

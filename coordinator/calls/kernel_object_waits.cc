@@ -11,8 +11,8 @@ namespace tcs {
 
 namespace {
 
-// The kernel has let the thread go on: it is on its way, or where it runs although it is not
-// dispatched, at its gate already.
+// The kernel has let the thread go on. The thread is on its way, or at its gate already where it
+// runs although it is not dispatched.
 bool HasComeBack(const Task& task) {
   if (ThreadState(task.tid) == 'R') return true;
   return task.slot >= 0 && !task.parked && SlotOf(task).gate.load() != shm::kGateOpen;
@@ -51,7 +51,8 @@ bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, EventTime when)
   // A nanosecond apart, so that they try in this order on whatever cores they are.
   for (const WaitQueues::Thread thread : waiters) {
     Task& task = run_.table.At(thread);
-    // The kernel would hold those for which nothing is left, and end their waits in its own time.
+    // The kernel would hold the threads for which nothing is left, and end their waits in its own
+    // time.
     const bool is_in_call = task.wait.has_value() && task.wait->is_in_trapped_call;
     if (is_in_call && (has_let_one_go || StillWaits(task))) continue;
     has_let_one_go |= is_in_call;
@@ -73,9 +74,9 @@ bool KernelObjectWaits::LookAtKernelWaits(EventTime when) {
   return found;
 }
 
-// What is written to one end of a terminal comes to the other one by a worker of the kernel, in its
-// own time; but a poll waits for that worker. Twice, for what arrives at one end may be echoed to
-// another.
+// A worker of the kernel carries output from one end of a terminal to the other, in its own time;
+// but a poll waits for that worker. The poll is made twice, because input at one end may be echoed
+// to another.
 void KernelObjectWaits::FlushTerminals(EventTime when) {
   for (int turn = 0; turn < 2; ++turn) {
     for (const Task& task : run_.table.tasks()) {

@@ -1,5 +1,5 @@
-// Waits for kernel objects that cannot be polled (queues/wait_queues.h), and what else others tell
-// of when they do it: locks of files, and what is written to terminals.
+// Waits for kernel objects that cannot be polled (queues/wait_queues.h), and other changes that
+// threads tell of when they make them: locks of files, and output to terminals.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -17,17 +17,18 @@ namespace tcs {
 
 class KernelObjectWaits {
  public:
-  // `terminals_written`: what was written to terminals until that moment can be read.
+  // `terminals_written` is called when all that was written to terminals until that moment can be
+  // read.
   KernelObjectWaits(RunState& run, Waker& waker, std::function<void(EventTime)> terminals_written)
       : run_(run), waker_(waker), terminals_written_(std::move(terminals_written)) {}
 
-  // As the notification kWaitObject says.
+  // The thread waits as the notification kWaitObject says.
   void Wait(Task& task, const shm::Notification& note, VirtualTime deadline);
   // The same for a call made raw, which the kernel carries out once it need not wait.
   void WaitInCall(Task& task, const KernelObject& object, VirtualTime deadline);
   // The thread waits no longer.
   void Leave(const Task& task) { objects_.Leave(task.order); }
-  // It has ended.
+  // The thread has ended.
   void Forget(const Task& task) { objects_.Forget(task.order); }
 
   // Something of that kind (shm::KernelObjectKind) has been done to the object. True if that has
@@ -35,8 +36,8 @@ class KernelObjectWaits {
   bool Wake(std::int64_t kind, std::int64_t id, EventTime when);
   // A process that ends may change any object: the kernel undoes what it did to semaphores.
   void WakeAll(EventTime when);
-  // Threads that the kernel holds in a call of theirs, and has just let go on. True if there are
-  // any.
+  // Wakes the threads that the kernel held in a call of theirs, and has just let go on. True if
+  // there are any.
   bool LookAtKernelWaits(EventTime when);
 
   const WaitQueues& queues() const { return objects_; }

@@ -14,7 +14,7 @@ namespace tcs {
 
 namespace {
 
-// What /proc shows the descriptor as: for sockets their number, which no other socket has.
+// The text that /proc shows for the descriptor: for a socket its number, which no other socket has.
 std::string FileOf(const std::filesystem::path& descriptor) {
   std::error_code gone;
   return std::filesystem::read_symlink(descriptor, gone).string();
@@ -23,7 +23,7 @@ std::string FileOf(const std::filesystem::path& descriptor) {
 int DescriptorsOf(pid_t pid, const std::string& file) {
   int count = 0;
   std::error_code gone;
-  // Not a range-for: its steps throw, where the process ends meanwhile.
+  // Not a range-for: the steps of a range-for throw where the process ends meanwhile.
   std::filesystem::directory_iterator entry(fmt::format("/proc/{}/fd", pid), gone);
   for (; !gone && entry != std::filesystem::directory_iterator{}; entry.increment(gone)) {
     if (FileOf(entry->path()) == file) ++count;

@@ -1,5 +1,6 @@
-// Whether a descriptor of a client's is the last one of its socket: only that one's close lingers
-// (SO_LINGER). The clients' processes are all that can have others, as far as /proc tells.
+// Whether a descriptor of a client's is the last one of its socket: only the last one's close
+// lingers (SO_LINGER). Only the clients' processes can have other descriptors, as far as /proc
+// tells.
 #pragma once
 
 #include "coordinator/port/traps.h"
@@ -11,7 +12,7 @@ namespace tcs {
 class LastDescriptor {
  public:
   static bool AsksFor(const TrappedCall& call);
-  // `task`: null for no thread of the run.
+  // `task`: null if the caller is no thread of the run.
   static void Answer(const RunState& run, const Task* task, const TrappedCall& call);
 };
 

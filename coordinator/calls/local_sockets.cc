@@ -14,7 +14,8 @@ constexpr std::uint64_t kMostMessages = 1024;  // of one sendmmsg: the kernel se
 
 }  // namespace
 
-// False where there is no room; and where it is another robot's, to which nothing is local then.
+// False where there is no room, and where the number is another robot's, to which nothing is local
+// then.
 bool LocalSockets::Claim(shm::RobotByNumber& table, std::size_t* count, std::uint64_t number,
                          const Robot& robot) {
   shm::RobotByNumber::Place* place = shm::PlaceOf(table, number);
@@ -38,7 +39,8 @@ bool LocalSockets::Claim(shm::RobotByNumber& table, std::size_t* count, std::uin
 
 void LocalSockets::Binds(const Robot& robot, std::uint64_t cookie, std::uint64_t name) {
   if (robot.is_reached || cookie == 0 || name == 0) return;
-  // The name first: whoever looks without waiting must be found by those that send.
+  // The name comes first: a receiver that looks without waiting must be found by the threads that
+  // send.
   if (Claim(sockets_->by_name, &names_, name, robot)) {
     Claim(sockets_->by_cookie, &cookies_, cookie, robot);
   } else {
@@ -72,12 +74,12 @@ void LocalSockets::Reaches(Task& task, std::uint32_t number) {
   task.ComeTo(std::max(task.reached, robot.Furthest()));
 }
 
-// Whose descriptor it takes is not looked at.
+// Whose descriptor the thread takes is not looked at.
 void LocalSockets::ReachesAll(Task& task) {
   for (const Robot& robot : run_.robots) Reaches(task, robot.number);
 }
 
-// Of the name at that address of the memory of a process of the robot.
+// The owner of the name at that address of the memory of a process of the robot.
 std::uint32_t LocalSockets::OwnerOf(const Robot& robot, pid_t pid, std::uint64_t address,
                                     std::uint64_t size) const {
   sockaddr_un name{};
@@ -100,7 +102,7 @@ void LocalSockets::ReachesByMessage(Task& task, std::uint64_t message) {
   msghdr header{};
   if (!ReadMemory(task.process->pid, message, &header, sizeof header)) return;
   ReachesByAddress(task, reinterpret_cast<std::uint64_t>(header.msg_name), header.msg_namelen);
-  // With descriptors in it, perhaps.
+  // The message may have descriptors in it.
   if (header.msg_controllen > 0) Reaches(task, task.process->robot->number);
 }
 

@@ -1,9 +1,9 @@
 // Which sockets only programs of one robot send to, for as long as that is so
 // (shm/local_sockets.h).
 //
-// For the coordinator's thread only. What clients say of their sockets is not checked: a name that
-// two robots claim belongs to neither, a socket is looked up by its own robot only, and a client
-// that lies about its own sockets harms itself only.
+// For the coordinator's thread only. The coordinator does not check what clients say of their
+// sockets: a name that two robots claim belongs to neither, a socket is looked up by its own robot
+// only, and a client that lies about its own sockets harms itself only.
 #pragma once
 
 #include <sys/types.h>
@@ -23,18 +23,18 @@ class LocalSockets {
   LocalSockets(const LocalSockets&) = delete;
   LocalSockets& operator=(const LocalSockets&) = delete;
 
-  // Where all clients see it; outlives this.
+  // Publishes the sockets in memory that all clients see, and that outlives this.
   void PublishIn(shm::LocalSockets& sockets) { sockets_ = &sockets; }
 
   // A program of the robot is about to bind that socket to a name.
   void Binds(const Robot& robot, std::uint64_t cookie, std::uint64_t name);
-  // A thread of the robot (null: it is not known of which) is about to bind a socket in a call that
-  // the shim does not see: what it does with it
-  // is not known, and if the name was some robot's nothing is local to that robot any more.
+  // A thread of the robot (null: the robot is not known) is about to bind a socket in a call that
+  // the shim does not see. What the thread does with the socket is not known, and if the name was
+  // some robot's nothing is local to that robot any more.
   void BindsUnseen(const Robot* robot, const TrappedCall& call);
-  // The thread is about to reach the robot of that number: nothing is local to it any more, and the
-  // thread has come no less far than that robot has looked by now. A number that no robot has is
-  // passed by.
+  // The thread is about to reach the robot of that number: nothing is local to that robot any more,
+  // and the thread has come no less far than that robot has looked by now. A number that no robot
+  // has is ignored.
   void Reaches(Task& task, std::uint32_t number);
   // The same for a call that the kernel is to carry out, if the call reaches a robot.
   void ReachesBy(Task& task, const TrappedCall& call);
@@ -51,7 +51,7 @@ class LocalSockets {
 
   RunState& run_;
   shm::LocalSockets* sockets_ = nullptr;
-  std::size_t cookies_ = 0, names_ = 0;  // that have a place
+  std::size_t cookies_ = 0, names_ = 0;  // entries that have a place
 };
 
 }  // namespace tcs

@@ -20,7 +20,8 @@ std::int64_t LockFutexes::Lock(Task& task, const TrappedCall& call, int command)
   std::uint32_t value = 0;
   if (!ReadMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
   const auto owner_tid = static_cast<pid_t>(value & kOwner);
-  // A signal may have ended its wait when it already had the lock; then the kernel calls again.
+  // A signal may have ended the thread's wait when the thread already had the lock; then the kernel
+  // makes the call again.
   const bool has_it_now = std::exchange(task.handed_lock, 0) == call.args[0];
   if (owner_tid == task.own_tid) return has_it_now ? 0 : -EDEADLK;
   const FutexKey key = FutexWords::KeyFor(task, call, call.args[0]);
@@ -92,7 +93,7 @@ void LockFutexes::WakeThoseWaitingFor(Task& ended, EventTime when) {
   }
 }
 
-// Like FUTEX_WAIT_BITSET, until somebody hands it on to the lock.
+// Like FUTEX_WAIT_BITSET, until another thread hands the waiting thread on to the lock.
 std::int64_t LockFutexes::WaitAtCondition(Task& task, const TrappedCall& call) {
   if (call.args[0] == call.args[4] || call.args[4] % sizeof(std::uint32_t) != 0) return -EINVAL;
   TrappedCall wait = call;
@@ -112,7 +113,8 @@ void LockFutexes::Requeue(Task& waiter, const FutexKey& lock, Task& owner) {
   inheritance_.Find(owner);
 }
 
-// The first of the waiters gets the lock, if nobody has it; all others wait for it from now on.
+// The first of the waiters gets the lock, if no thread has it; all other waiters wait for the lock
+// from now on.
 std::int64_t LockFutexes::RequeueFromCondition(Task& task, const TrappedCall& call) {
   if (static_cast<int>(call.args[2]) != 1 || call.args[0] == call.args[4]) return -EINVAL;
   const auto most = static_cast<int>(call.args[3]);

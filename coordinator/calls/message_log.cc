@@ -34,7 +34,7 @@ MessageLog::MessageLog(std::string folder, const Scenario& scenario, const dds::
       realtime_offset_ns_(realtime_offset_ns),
       commanded_(CommandedTopics(scenario)) {}
 
-// Numbers are not given to others. As the schedule calls the world.
+// A number is never given to another process. The world is called as in the schedule.
 const std::string& MessageLog::NameOfProcess(dds::Hub::Number number) {
   const auto [name, is_new] = names_.try_emplace(number);
   if (is_new) name->second = number == 0 ? "dynamics" : AsField(name_(number));
@@ -49,7 +49,7 @@ void MessageLog::Delivered(const dds::TopicLog::Delivery& delivery) {
     failure_ = file_.Open(path_, "sent_ns,sender,received_ns,receiver,topic");
     if (!failure_.empty()) return;
   }
-  // What the world says it has seen earlier than it sends it.
+  // The world has seen what a message says earlier than it sends the message.
   const std::int64_t sent_ns =
       delivery.from == 0 ? delivery.source_timestamp_ns - realtime_offset_ns_ : delivery.sent_ns;
   file_.Line(sent_ns, NameOfProcess(delivery.from), delivery.received_ns,

@@ -1,5 +1,6 @@
-// Which DDS messages reached whom, and when: messages.csv, a line for each sample and process. What
-// reaches the coordinator is one of the world's commands; what only recordings read is left out.
+// Which DDS messages reached whom, and when: messages.csv, a line for each sample and process. A
+// message that reaches the coordinator is one of the world's commands; messages that only
+// recordings read are left out.
 //
 // The file is made with the first line. For the coordinator's thread only.
 #pragma once
@@ -20,7 +21,7 @@ class MessageLog final : public dds::TopicLog::DeliveryListener {
  public:
   using NameOf = std::function<std::string(dds::Hub::Number)>;
 
-  // `name` says what a process is called. The log outlives this. `realtime_offset_ns` is what
+  // `name` says what a process is called. `topics` outlives this. `realtime_offset_ns`: how far
   // stamps are ahead of virtual time.
   MessageLog(std::string folder, const Scenario& scenario, const dds::TopicLog& topics, NameOf name,
              std::int64_t realtime_offset_ns);

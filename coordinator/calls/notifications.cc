@@ -27,13 +27,14 @@ Wait::What IdleFor(const shm::Notification& note) {
 
 }  // namespace
 
-// From the program's clock to the robot's.
+// Converts the deadline from the program's clock to the robot's.
 VirtualTime Notifications::WaitDeadlineOf(const Task& task, const shm::Notification& note) {
   const ProgramTime deadline = OwnTime(std::max<std::int64_t>(0, note.deadline_ns));
   return std::max(task.process->clock.RobotTimeOf(deadline), task.reached);
 }
 
-// By the number that the thread's process says; 0 for any, and where it says what it alone knows.
+// The process with the number that the thread's process says; 0 for any, and for a number that only
+// that process knows.
 pid_t Notifications::ProcessNamed(const Task& by, std::int64_t said) {
   const auto pid = static_cast<pid_t>(said);
   if (pid <= 0 || by.process->pid_namespace == 0) return pid;
@@ -55,7 +56,7 @@ bool Notifications::MeetsOutside(Task& task, const shm::Notification& note) {
   return true;
 }
 
-// Equals have their turn.
+// Equal threads have their turn.
 bool Notifications::Yield(Task& task) {
   SchedulerOf(task).Yield(task.order);
   if (++task.yields < kYieldsBeforeLook) return false;
@@ -98,8 +99,9 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
     case Kind::kWaitChild:
       waker_.Wait(task, {awaited::Child{ProcessNamed(task, note.args[0]), note.args[1] != 0}});
       parts_.unregistered_children.LookFor(*task.process);
-      // It has looked, and found none; but since then one may have ended. One that it does not wait
-      // for stays there, so a look at who is there would never let it wait.
+      // The thread has looked, and found no child that has ended; but since then one may have
+      // ended. A child that the thread does not wait for stays there, so a look at the ended
+      // children would never let the thread wait.
       if (std::exchange(task.children_looked, task.process->children_changed) !=
           task.process->children_changed) {
         waker_.Wake(task, shm::WakeReason::kGo, when);
@@ -140,8 +142,9 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kWakeObject:
       looks_again = note.args[0] == static_cast<std::int64_t>(shm::KernelObjectKind::kTerminals);
-      // The kernel would have given those who wait what they wait for, before the waker could take
-      // it again. So they go first, where its policy lets them.
+      // The kernel would have given the waiting threads what they wait for, before the waking
+      // thread could take it again. So the waiting threads go first, where the waking thread's
+      // policy lets them.
       if (parts_.objects.Wake(note.args[0], note.args[1], when) &&
           ParametersOf(task).policy == SCHED_OTHER) {
         SchedulerOf(task).Yield(task.order);

@@ -1,5 +1,5 @@
-// What threads notify, each to where it belongs. Everything in a notification is untrusted: it is a
-// copy, and it is checked.
+// Hands each notification of a thread to the part that it belongs to. Everything in a notification
+// is untrusted: the notification is a copy, and it is checked.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -46,9 +46,9 @@ class Notifications {
   Notifications(RunState& run, Waker& waker, Parts parts)
       : run_(run), waker_(waker), parts_(parts) {}
 
-  // True: there may be more by now that belongs to this moment.
+  // True: there may be more events by now that belong to this moment.
   bool Handle(Task& task, const shm::Notification& note);
-  // Equals have their turn. As Handle.
+  // Equal threads have their turn. Returns as Handle.
   bool Yield(Task& task);
 
  private:

@@ -27,8 +27,8 @@ namespace tcs {
 
 namespace {
 
-// Others may pass by so much what real time stands for: their turns would be as short as the real
-// time between two looks otherwise.
+// Other leaves may pass by so much the time that real time stands for: their turns would be as
+// short as the real time between two looks otherwise.
 constexpr VirtualDuration kGrain = VirtualDuration::Microseconds(100);
 
 // From when something has been found to when its time is taken.
@@ -37,10 +37,10 @@ constexpr VirtualDuration kFound = VirtualDuration::Microseconds(20);
 // Drivers have many calls that wait for a moment: for each other, or for a lock.
 constexpr HostDuration kShortCall = HostDuration::Microseconds(100);
 
-// Of those that are never found.
+// Of raw connections that are never found.
 constexpr std::size_t kMostRawConnects = 64;
 
-// What a program says of itself is believed so far.
+// How long ago a program may say that something happened. A longer time is not believed.
 constexpr HostDuration kLongestNews = HostDuration::Seconds(1);
 
 VirtualDuration Passed(HostDuration real, double speed) {
@@ -74,14 +74,14 @@ bool IsNamed(const Process& process, const std::string& name) {
 }  // namespace
 
 void OutsideWaits::PublishIn(shm::OutsideFiles& files) {
-  // There the world stands while a program waits.
+  // Under callback the world stands while a program waits.
   if (run_.IsCallback()) return;
   published_ = &files;
   for (const RobotSpec& robot : run_.scenario.robots) {
     for (const ClientSpec& client : robot.clients) {
       for (const std::string& name : client.outside.names) {
         struct stat status;
-        // Sockets are known by whom they reach (Connects).
+        // A socket is known by the peer that it reaches (Connects).
         if (!name.starts_with('/') || stat(name.c_str(), &status) != 0) continue;
         if (!S_ISSOCK(status.st_mode)) Publish(shm::OutsideKeyOf(status), name, true, nullptr);
       }
@@ -109,8 +109,8 @@ bool OutsideWaits::MayMeetOutside(const Process& process) const {
   });
 }
 
-// One that is gone, or a new one; or else that of a program that has ended, or of a socket on which
-// nothing is asked. Null: there is none.
+// A free entry: one whose file is gone, or a new one; or else the entry of a program that has
+// ended, or of a socket on which nothing is asked. Null: there is none.
 OutsideWaits::File* OutsideWaits::FreeFile() {
   const auto find = [this](auto is_free) {
     const auto found = std::find_if(files_.begin(), files_.end(), is_free);
@@ -206,9 +206,9 @@ OutsideWaits::Next OutsideWaits::Handle(Task& task, const shm::Notification& not
 }
 
 bool OutsideWaits::Asks(File& file, const Task& task, const Asking& asking) {
-  // Nobody has looked until it was connected.
+  // No thread looked before the socket was connected.
   if (file.is_connecting && !IsBeingConnected(asking.fd)) Rest(file);
-  // What is still to be taken is no answer to this, and stays to be seen.
+  // Input that is still to be taken is no answer to this request, and stays to be seen.
   if (file.state != State::kIdle || file.is_always || file.has_outlasted) return false;
   if (asking.has_input) return false;
   Ask(file, task, asking.ago);
@@ -219,7 +219,7 @@ bool OutsideWaits::AsksRaw(const Task& task, int fd) {
   LookAtRawConnects(task);
   File* file = FileOf(fd);
   if (file == nullptr) return false;
-  // What was taken raw nobody has told of.
+  // No notification tells of input that was taken by a raw call.
   const bool has_input = HasInput(fd);
   if (file->state == State::kShown && !has_input) Rest(*file);
   return Asks(*file, task, {fd, HostDuration(), has_input});
@@ -232,7 +232,8 @@ void OutsideWaits::ConnectsRaw(const Task& task, int number, int fd) {
   raw_connects_.push_back({task.process, number, shm::OutsideKeyOf(status)});
 }
 
-// The kernel carries them out meanwhile. One that it has refused is found when it is closed.
+// The kernel carries raw connects out meanwhile. A connect that it has refused is found when the
+// socket is closed.
 void OutsideWaits::LookAtRawConnects(const Task& task) {
   if (raw_connects_.empty()) return;
   std::erase_if(raw_connects_, [&](const RawConnect& connect) {
@@ -252,13 +253,13 @@ void OutsideWaits::LookAtRawConnects(const Task& task) {
   });
 }
 
-// The rest of what has been taken.
+// Shows the rest of the input of which some has been taken.
 void OutsideWaits::ShowRest(File& file) {
   file.state = State::kShown;
   ShowFrom(file, 0);
 }
 
-// False: it is none.
+// False: the file is no device.
 bool OutsideWaits::PublishDevice(const Task& task, int fd) {
   struct stat status;
   if (fstat(fd, &status) != 0 || !S_ISCHR(status.st_mode)) return false;
@@ -288,7 +289,7 @@ bool OutsideWaits::BeginsToConnect(File& file, const Task& task, HostDuration ag
   return true;
 }
 
-// Others of the same file may be left, here and in other processes of the run.
+// Other descriptors of the same file may be left, here and in other processes of the run.
 void OutsideWaits::Closes(int fd) {
   File* file = FileOf(fd);
   struct stat status;
@@ -320,8 +321,8 @@ void OutsideWaits::Ask(File& file, const Task& task, HostDuration ago) {
   ShowFrom(file, shm::kOutsideUnknown);
 }
 
-// Calls `take` with the file, or with those that are in the epoll set, of which `fd` is a copy, and
-// a copy of each.
+// Calls `take` with the file of which `fd` is a copy, or with each file in the epoll set of which
+// `fd` is a copy, and with a copy of the file's descriptor.
 template <class Take>
 void OutsideWaits::ForEachAt(const Task& task, int fd, Take take) {
   struct stat status;
@@ -339,7 +340,7 @@ void OutsideWaits::ForEachAt(const Task& task, int fd, Take take) {
     const UniqueFd copy = CopyOfDescriptor(*task.process, entry.fd);
     File* file = copy ? FileOf(copy.get()) : nullptr;
     if (file == nullptr) continue;
-    // Who is told of room, too, is told of both at once.
+    // A thread that is told of room, too, is told of input and room at once.
     constexpr std::uint32_t kBoth = EPOLLIN | EPOLLOUT;
     const bool tells_of_both = (entry.events & kBoth) == kBoth && !file->is_connecting;
     SetBare(*file, tells_of_both);
@@ -390,7 +391,7 @@ void OutsideWaits::Await(File& file, const Task& task, int fd) {
   const bool is_watched = file.copy && reactor_.Add(file.copy.get(), answers | EPOLLONESHOT,
                                                     {Tag::kOutside, index, file.number});
   if (!is_watched) {
-    // There is nothing to wait for in what cannot be polled.
+    // A file that cannot be polled gives nothing to wait for.
     Rest(file);
     file.has_outlasted = true;
     ShowFrom(file, 0);
@@ -438,7 +439,7 @@ void OutsideWaits::Unwatch(File& file) {
   file.copy.Reset();
 }
 
-// Nothing is waited for.
+// Nothing is waited for at the file any more.
 void OutsideWaits::Rest(File& file) {
   Unwatch(file);
   has_rested_ |= file.state == State::kAsked || file.state == State::kCame;
@@ -462,7 +463,7 @@ void OutsideWaits::HasCome(File& file, HostTime now, VirtualTime at) {
                                    : Passed(now - file.asked_real, SpeedOf(*file.process));
   file.state = State::kCame;
   file.seen_from = file.asked_at + took;
-  // It was found then; the rest is how long this took.
+  // The answer was found at `at`; the rest is how long it took to find it.
   if (!run_.IsFixed() && file.seen_from > at && file.seen_from - at < kFound) file.seen_from = at;
   ShowFrom(file, std::max<std::int64_t>(file.seen_from.ns(), 1));
   if (Process* client = file.process->client; client != nullptr) {
@@ -516,7 +517,7 @@ void OutsideWaits::GiveUp(File& file) {
   Rest(file);
 }
 
-// A call whose thread has.
+// Whether the entry is a call whose thread has ended.
 bool OutsideWaits::HasEnded(const File& file) const {
   return shm::IsOutsideCall(file.key) &&
          run_.table.Living(static_cast<pid_t>(file.key & ~shm::kOutsideCall)) == nullptr;

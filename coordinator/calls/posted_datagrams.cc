@@ -18,7 +18,7 @@ const char* PostedDatagrams::Take(Task& task) {
   shm::CommandRing& ring = SlotOf(task).command_ring;
   const std::uint64_t end = ring.posted.load(std::memory_order_acquire);
   if (end == task.posts_taken) return nullptr;
-  // Nothing moves any more.
+  // Nothing in the world moves any more.
   const bool is_over = !world_.present() || run_.IsInGrace();
   while (task.posts_taken != end) {
     shm::CommandRing::Head head;

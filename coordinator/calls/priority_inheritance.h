@@ -1,5 +1,6 @@
 // Which thread is blocked on which owner's lock, so that the owner runs with the priority of the
-// most urgent thread that waits for it. The robot's scheduler applies that; this class tells it.
+// most urgent thread that waits for it. The robot's scheduler applies the priority; this class
+// tells the scheduler.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -20,7 +21,7 @@ class PriorityInheritance {
   // The task is not blocked on a thread any more, and that thread loses the priority that it
   // inherited.
   void Leave(Task& task);
-  // Whom the thread blocks, or how urgent they are, may have changed.
+  // The threads that this thread blocks, or how urgent they are, may have changed.
   void Find(Task& task);
 
  private:

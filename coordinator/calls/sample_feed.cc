@@ -8,7 +8,7 @@ namespace tcs {
 
 namespace {
 
-// Of one client. Whose reader lets more wait keeps only the last ones.
+// Of one client. A client whose reader lets more samples wait keeps only the last ones.
 constexpr std::size_t kMostWaiting = 4096;
 
 std::map<std::string, int> CommandsByTopic(const Scenario& scenario) {
@@ -29,7 +29,7 @@ SampleFeed::SampleFeed(RunState& run, AnswerFeed& answers, const dds::TopicLog& 
       name_(std::move(name)),
       commanded_(CommandsByTopic(run.scenario)) {}
 
-// On the world's clock.
+// When the sample was sent, on the world's clock.
 std::int64_t SampleFeed::SentAt(const dds::TopicLog::Delivery& delivery) const {
   // The world keeps the date that it began with.
   const std::int64_t now_ns = run_.header->realtime_offset_ns;
@@ -38,7 +38,7 @@ std::int64_t SampleFeed::SentAt(const dds::TopicLog::Delivery& delivery) const {
   return delivery.source_timestamp_ns - offset_ns;
 }
 
-// Numbers are not given to others.
+// A number is never given to another process.
 const std::optional<AnswerBook::Who>& SampleFeed::WhoIs(dds::Hub::Number number) {
   const auto [who, is_new] = clients_.try_emplace(number);
   if (is_new) who->second = answers_.WhoIs(name_(number));
@@ -82,7 +82,8 @@ void SampleFeed::Delivered(const dds::TopicLog::Delivery& delivery) {
   ++input.sent;
 }
 
-// The thread that has sent it has the turn, or was the last of its client's that took something.
+// The thread that has sent the sample has the turn, or was the last thread of its client that took
+// something.
 std::optional<AnswerBook::Who> SampleFeed::SenderOf(const dds::TopicLog::Delivery& delivery) {
   std::optional<AnswerBook::Who> who = WhoIs(delivery.from);
   if (!who.has_value()) return who;

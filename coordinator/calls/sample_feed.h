@@ -1,9 +1,9 @@
 // The DDS samples that wait for clients: which have reached which program, and which of them its
-// threads have taken. Of each client it keeps what it was sent, and it tells the book of answers
+// threads have taken. The class keeps what each client was sent, and it tells the book of answers
 // what threads take and command (answers/).
 //
-// What a thread takes is told by its samples' source timestamps; which topic a reader is of, by the
-// first sample that only one topic can have had. For the coordinator's thread only.
+// The source timestamps of samples tell which of them a thread takes. The first sample that only
+// one topic can have had tells which topic a reader is of. For the coordinator's thread only.
 #pragma once
 
 #include <cstdint>
@@ -28,11 +28,11 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
  public:
   using NameOf = std::function<std::string(dds::Hub::Number)>;
 
-  // `name` says which client a process is of. All outlive this.
+  // `name` says which client a process is of. `run`, `answers` and `topics` outlive this.
   SampleFeed(RunState& run, AnswerFeed& answers, const dds::TopicLog& topics, NameOf name);
 
   void Delivered(const dds::TopicLog::Delivery& delivery) override;
-  // The thread has taken some, as it has noted, at that time.
+  // The thread has taken samples, as it has noted, at that time.
   void Taken(const Task& task, const shm::DatagramNotes::Note& note, VirtualTime at);
 
   // By client, in the order of the scenario.
@@ -42,7 +42,7 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
   using Topic = dds::TopicLog::Topic;
   struct Sample {
     Topic topic = 0;
-    std::int64_t source_ns = 0;  // its timestamp
+    std::int64_t source_ns = 0;  // the source timestamp
     std::int64_t arrived_ns = 0, sampled_ns = -1, period_ns = 0;
     int sensor = -1;   // as AnswerBook::Taken has it
     std::string from;  // InputFigures::from

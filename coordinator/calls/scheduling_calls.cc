@@ -83,7 +83,7 @@ std::int64_t SchedulingCalls::SetAffinity(const Task& asking, Task& task, std::u
   RobotScheduler& scheduler = SchedulerOf(task);
   const std::uint64_t before = scheduler.CoresOf(task.order);
   if (!scheduler.SetCores(task.order, cores)) return -EINVAL;
-  // What it was promised was promised of all cores.
+  // The processor time that the thread was promised was promised of all cores.
   if (ParametersOf(task).policy == SCHED_DEADLINE && !scheduler.MayRunAnywhere(task.order)) {
     scheduler.SetCores(task.order, before);
     return -EBUSY;

@@ -19,7 +19,8 @@ bool IsSameOwner(const Credentials& asking, pid_t tid) {
   return asking.effective_uid == owner.effective_uid || asking.effective_uid == owner.real_uid;
 }
 
-// Where the kernel refuses to say it, as of who has changed users, /proc does; that takes longer.
+// Where the kernel refuses to say the limit, as of a process that has changed users, /proc says it;
+// a look there takes longer.
 rlim_t LimitOf(pid_t tid, __rlimit_resource resource, const char* name) {
   rlimit limit{};
   return prlimit(tid, resource, nullptr, &limit) == 0 ? limit.rlim_cur : ReadSoftLimit(tid, name);

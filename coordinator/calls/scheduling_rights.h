@@ -1,7 +1,7 @@
 // Which thread may ask the robot's scheduler for what: the kernel's rules (sched(7)), by the
 // credentials and resource limits that the program has in the kernel. The kernel itself cannot
-// check, because these calls never reach it. What else keeps tcsim from real-time priorities on the
-// host (a group without a budget, a filter) is the host's, and not the robot's.
+// check, because these calls never reach it. Anything else that keeps tcsim from real-time
+// priorities on the host (a group without a budget, a filter) is the host's, and not the robot's.
 #pragma once
 
 #include <sys/types.h>

@@ -14,7 +14,7 @@ namespace {
 
 int Arg(const TrappedCall& call, int index) { return static_cast<int>(call.args[index]); }
 
-// None: the call is another one.
+// None: the call sends no signal.
 std::optional<int> SignalIn(const TrappedCall& call) {
   switch (call.number) {
     case SYS_kill:
@@ -30,8 +30,8 @@ std::optional<int> SignalIn(const TrappedCall& call) {
   }
 }
 
-// By the numbers that the sender's process says; the kernel takes that of any thread for its
-// process.
+// By the numbers that the sender's process says; the kernel takes the number of any thread for that
+// of its process.
 SentSignal Sent(RunState& run, const Task& by, pid_t pid, pid_t tid, int number) {
   const Task* thread = tid > 0 ? run.table.Named(*by.process, tid) : nullptr;
   const Task* in_process = pid > 0 ? run.table.Named(*by.process, pid) : thread;

@@ -31,7 +31,7 @@ EventWaiter WaiterOf(const Task& task) {
   return {task.order, wait.takes, wait.last_is_first, wait.order};
 }
 
-// The only descriptor of one that takes.
+// The only descriptor of a thread that waits to take.
 int DescriptorOf(const Task& task) {
   return task.Awaits<awaited::Descriptors>()->fds.front().get();
 }
@@ -42,8 +42,8 @@ bool HasEvent(const Task& task) {
 
 bool IsExclusive(const EpollEntry& entry) { return (entry.events & EPOLLEXCLUSIVE) != 0; }
 
-// The file of the only descriptor: where two wait at the same one, they may be offered the same
-// event. All epoll sets count as one.
+// The file of the only descriptor: two threads that wait at the same file may be offered the same
+// event. All epoll sets count as one file.
 std::uint64_t PlaceOf(const Task& task) {
   struct stat status {};
   fstat(DescriptorOf(task), &status);
@@ -51,7 +51,8 @@ std::uint64_t PlaceOf(const Task& task) {
                                                          << 32;
 }
 
-// What is in the epoll sets that threads wait at, each looked at once: there may be hundreds.
+// The entries of the epoll sets that threads wait at, each set looked at once: there may be
+// hundreds.
 class Looks {
  public:
   const std::vector<EpollEntry>& EntriesOf(const Task& task) {
@@ -73,7 +74,7 @@ bool OffersTheSameOnly(const Task& first, const Task& other, Looks& looks) {
   bool shared = false;
   for (const EpollEntry& entry : looks.EntriesOf(other)) {
     const RemoteDescriptor target(other, entry.fd);
-    // What is no longer under its number cannot be looked at.
+    // A file that is no longer under its number cannot be looked at.
     if (target.fd() < 0 || !IsAbout(other_set, entry, target.fd())) continue;
     if (!IsReady(target.fd(), entry.events)) continue;
     const bool same = IsExclusive(entry) &&
@@ -122,12 +123,12 @@ void SharedEvents::PassOver(Task& task, Task& first) {
     wait.passed_over_for = first.order;
     first.passes_on = true;
     first.reply[1] = 1;
-    // What the kernel carries out for it nobody tells of.
+    // No notification tells of a call that the kernel carries out for the first thread.
     if (first.trap_id != 0 && first.after_call == AfterCall::kNone) {
       first.after_call = AfterCall::kTaken;
     }
   }
-  // What is there already comes once more, in the next look, and is not for it.
+  // An event that is there already comes once more, in the next look, and is not for this thread.
   wait.skips_in = HasEvent(task) ? reactor_.next_look() : 0;
   reactor_.Modify(fd, wait.events | EPOLLET, DescriptorWaits::SubjectOf(task, wait));
   wait.is_edge_armed = true;

@@ -1,6 +1,7 @@
 // One event, one waiter (queues/one_waiter.h): which descriptors offer the same event, and what the
-// kernel has there. So does the kernel with several threads that wait in epoll sets which hold the
-// same descriptor with EPOLLEXCLUSIVE; what that keeps from the others is the first one's for good.
+// kernel has there. The kernel does so, too, with several threads that wait in epoll sets which
+// hold the same descriptor with EPOLLEXCLUSIVE; an event that this keeps from the other threads is
+// the first thread's for good.
 //
 // A thread that has taken something says so, if others were passed over for it (kPassOn). For the
 // coordinator's thread only.
@@ -20,11 +21,11 @@ class SharedEvents {
   SharedEvents(RunState& run, Waker& waker, Reactor& reactor)
       : run_(run), waker_(waker), reactor_(reactor) {}
 
-  // The threads for which an event has come, in one look at the kernel: they go on, or are passed
-  // over. True if some are: then the reactor is to look again before anybody acts, for it tells of
-  // what they were passed over for once more.
+  // An event has come for these threads, in one look at the kernel: each thread goes on, or is
+  // passed over. True if some are passed over: then the reactor is to look again before anybody
+  // acts, because it tells once more of the event that they were passed over for.
   bool Wake(const std::vector<Task*>& awaiters, EventTime when);
-  // The thread has tried what it was woken for: what it has left is for the next.
+  // The thread has tried what it was woken for: the rest is for the next thread.
   void PassOn(Task& first, EventTime when);
 
  private:

@@ -11,8 +11,8 @@ namespace tcs {
 bool SignalCalls::Poll() {
   const bool awaited =
       run_.is_unprivileged || waker_.counts().for_signals() > 0 || waker_.counts().for_stops() > 0;
-  // The call in which the kernel holds a thread may be what has it send one: to the holder of a
-  // lease, say, for whom the thread waits.
+  // The call in which the kernel holds a thread may make the kernel send a signal: to the holder of
+  // a lease, say, for whom the thread waits.
   const bool is_held_anew = waker_.unseen() > std::exchange(unseen_, waker_.unseen());
   if (!awaited || (HostTsc() < next_look_tsc_ && !is_held_anew)) return false;
   next_look_tsc_ = HostTsc() + clock_.TicksIn(kLookEvery.ns());

@@ -9,8 +9,8 @@ namespace tcs {
 
 namespace {
 
-// What of `pending` makes a thread with these sets run or end. What only stops it does so when it
-// runs next.
+// The signals of `pending` that make a thread with these sets run or end. A signal that only stops
+// the thread does so when the thread runs next.
 std::uint64_t Deliverable(std::uint64_t pending, const SignalSets& sets, std::uint64_t blocked) {
   return pending & ~blocked & ~(kStopSignals & ~sets.caught);
 }
@@ -25,7 +25,7 @@ bool SignalWakes::EndAwait(Task& task, const SignalSets& sets, EventTime when) {
 }
 
 // A thread that waits may have kept the level of its last dispatch. With a signal it would run
-// before its next one, and lose what its call is to return.
+// before its next dispatch, and lose what its call is to return.
 void SignalWakes::HoldUntilDispatched(Task& task) {
   if (!active_.IsLast(task)) active_.Hold(task);
 }
@@ -66,7 +66,7 @@ void SignalWakes::WakeForSignal(Process& process, const SentSignal& sent, EventT
   for (Task* task : threads) HoldUntilDispatched(*task);
   for (Task* task : threads) {
     const SignalSets sets = SignalsOf(run_, *task);
-    if ((sets.caught & bit) == 0) return WakeForSignals(process, when);  // it may end the process
+    if ((sets.caught & bit) == 0) return WakeForSignals(process, when);  // may end the process
     WakeFor(*task, sets, &taken, when);
     const bool is_there_to_take = (sets.shared_pending & ~taken & bit) != 0;
     if (receiver != nullptr || !is_there_to_take) return;

@@ -14,11 +14,11 @@ namespace tcs {
 
 namespace {
 
-// Of what a program says that it will tell of, and never does.
+// Of creations of which a program says that it will tell, and never does.
 constexpr std::size_t kMostCreations = 64;
 
-// A child that acts in its parent's place. One of a program without the shim does not: nothing of
-// the parent's is in it but the memory.
+// A child that acts in its parent's place. A child of a program without the shim does not: nothing
+// of the parent's is in it but the memory.
 bool ActsForParent(const Task& maker, const CloneCall& call) {
   return call.SharesMemory() && call.WaitsForChild() && !maker.process->is_bare;
 }
@@ -29,7 +29,7 @@ bool Spawns::IsAnnounced(const Task& maker) {
   return maker.slot >= 0 && SlotOf(maker).announces.load() != 0;
 }
 
-// Of what the kernel will refuse nothing is found.
+// Nothing is found of a creation that the kernel will refuse.
 void Spawns::Begin(Task& maker, const TrappedCall& call) {
   const auto made = ReadCloneCall(call);
   if (!made.has_value()) return;
@@ -84,13 +84,13 @@ Task* Spawns::ActsFor(pid_t tid) {
   return nullptr;
 }
 
-// `is_done`: of what is not found there will be nothing.
+// `is_done`: a creation that is not found will never be there.
 void Spawns::TakeIn(Task& maker, EventTime when, bool announced_too, bool is_done) {
   if (maker.creations.empty()) return;
   std::vector<Creation> left;
   for (const Creation& creation : std::exchange(maker.creations, {})) {
     const CloneCall& call = creation.call;
-    // While that acts for its parent, whatever it says is said as by the parent.
+    // While the child acts for its parent, whatever the child says is said as by the parent.
     const bool acts = ActsForParent(maker, call) && (!is_done || ThreadState(maker.tid) == 'D');
     const auto take_in = [&] {
       return call.MakesThread() ? TakeInThread(maker, call, when) : TakeInChild(maker, call, when);
@@ -106,7 +106,7 @@ bool Spawns::IsNew(const Task& maker, pid_t tid) const {
          IsThreadOf(maker.process->pid, tid);
 }
 
-// 0: it is not there, or not yet.
+// 0: the thread is not there, or not yet.
 pid_t Spawns::ThreadOf(const Task& maker, const CloneCall& call) const {
   const auto told = [&](const CloneCall& by) {
     const Process& of = *maker.process;
@@ -156,7 +156,7 @@ bool Spawns::TakeInChild(Task& maker, const CloneCall& call, EventTime when) {
   }
   const Process& of = *maker.process;
   const pid_t parent = (call.flags & CLONE_PARENT) != 0 ? of.parent : of.pid;
-  if (parent == getpid()) return false;  // it cannot be told from others
+  if (parent == getpid()) return false;  // the child cannot be told from others
   for (const pid_t pid : ChildrenOf(parent)) {
     const char state = ThreadState(pid);
     if (state == 'X' || state == 'Z' || run_.table.LivingProcess(pid) != nullptr ||
@@ -164,7 +164,7 @@ bool Spawns::TakeInChild(Task& maker, const CloneCall& call, EventTime when) {
       continue;
     }
     Task& child = AddChild(maker, pid, when.at);
-    // One that has executed another program attaches, unless that has no shim.
+    // A child that has executed another program attaches, unless that program has no shim.
     const bool has_executed = call.SharesMemory();
     child.process->is_bare =
         has_executed ? parts_.bare_programs.TakeUnknown(pid) : maker.process->is_bare;
@@ -182,7 +182,7 @@ void Spawns::Announced(Task& maker, const shm::Notification& note) {
   } else {
     AnnouncedProcess(maker, static_cast<pid_t>(note.args[0]));
   }
-  // What else was made on the way nobody tells of.
+  // Nobody tells of the other threads and processes that were made on the way.
   MakerSpeaks(maker, {maker.reached});
 }
 
@@ -212,8 +212,8 @@ void Spawns::AnnouncedThread(Task& maker, const shm::Notification& note) {
   }
 }
 
-// Only a child of its own: with CLONE_PARENT its parent's. It has not been waited for, so that its
-// number is nobody else's.
+// Only a child of the maker's own, or with CLONE_PARENT of the maker's parent. The child has not
+// been waited for, so that its number is nobody else's.
 void Spawns::AnnouncedProcess(Task& maker, pid_t pid) {
   const auto is_it = [](const Creation& creation) {
     return creation.is_announced && !creation.call.MakesThread();

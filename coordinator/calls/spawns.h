@@ -1,13 +1,13 @@
-// New threads and processes: they are known from their creation on, and held until their first
+// New threads and processes, which are known from their creation on, and held until their first
 // dispatch.
 //
-// Whoever makes one does so by a trapped call. What the shim has made it tells of next
-// (kMadeThread, kSpawned), and that attaches at its first turn. All others (of the C library's own,
-// of other libraries, of bare clones, and those whose maker says something else before) have their
-// places at once, as if they had attached, and may do so when they first make a call that the shim
-// sees. Two kinds have none: a child by vfork that has its parent's memory acts in its parent's
-// place until it executes another program; and one that has it without being a thread is not
-// managed (processes/unregistered_children.h).
+// A program makes a thread or a process by a trapped call. The shim tells next of those that it has
+// made itself (kMadeThread, kSpawned), and they attach at their first turn. All other threads and
+// processes (of the C library's own, of other libraries, of bare clones, and those whose maker says
+// something else before) have their places at once, as if they had attached, and may attach when
+// they first make a call that the shim sees. Two kinds have no place: a child by vfork that has its
+// parent's memory acts in its parent's place until it executes another program; and a child that
+// has this memory without being a thread is not managed (processes/unregistered_children.h).
 //
 // For the coordinator's thread only.
 #pragma once
@@ -29,7 +29,7 @@ namespace tcs {
 
 class Spawns {
  public:
-  // The parts that it needs. They outlive it.
+  // The parts that Spawns needs, and that outlive it.
   struct Parts {
     Executor& executor;
     ThreadCreation& thread_creation;
@@ -44,9 +44,10 @@ class Spawns {
 
   // The shim makes what the thread makes now, and will tell of it.
   static bool IsAnnounced(const Task& maker);
-  // The thread makes one by that call, which the kernel carries out next.
+  // The thread makes a thread or a process by that call, which the kernel carries out next.
   static void Begin(Task& maker, const TrappedCall& call);
-  // The kernel may have made it by now. What the shim tells of may still be told.
+  // The kernel may have made the thread or the process by now. The shim may still tell of those
+  // that it makes itself.
   void LookForCreations(Task& maker, EventTime when) { TakeIn(maker, when, false, false); }
   // Of a thread that waits in the kernel, by vfork, for its child: the child is there. Before, the
   // thread waits for something else, as for the lock of a file that it maps.
@@ -55,10 +56,11 @@ class Spawns {
   // is through with its call.
   void TurnEnds(Task& maker, EventTime when) { TakeIn(maker, when, true, false); }
   void MakerSpeaks(Task& maker, EventTime when) { TakeIn(maker, when, true, true); }
-  // A thread that nobody knows has made a call: it may be one that another makes. True: it is not
-  // known yet, but will be once its maker has gone on.
+  // A thread that nobody knows has made a call: it may be one that another thread makes. True: the
+  // thread is not known yet, but will be once its maker has gone on.
   bool IsUnborn(pid_t tid, EventTime when);
-  // The thread in whose place that one acts, which is no other's; null: it acts for itself.
+  // The thread in whose place the thread `tid`, which is no other's, acts; null: the thread `tid`
+  // acts for itself.
   Task* ActsFor(pid_t tid);
   // kSpawned, kMadeThread.
   void Announced(Task& maker, const shm::Notification& note);

@@ -17,8 +17,8 @@ namespace tcs {
 
 namespace {
 
-// What the descriptor of a process says of itself: whose it is (0: it is none, or that one has
-// ended), and whether it says EAGAIN rather than wait (PIDFD_NONBLOCK).
+// What a descriptor of a process is: whose it is (0: it is no such descriptor, or the process has
+// ended), and whether a wait on it waits, rather than fail with EAGAIN (PIDFD_NONBLOCK).
 struct ProcessDescriptor {
   pid_t pid = 0;
   bool waits = true;

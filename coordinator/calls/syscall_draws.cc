@@ -38,7 +38,7 @@ Source SourceOf(int fd) {
   return is_uuid ? Source::kUuid : Source::kNone;
 }
 
-// Where read or readv puts what it reads; none: the kernel refuses it.
+// Where read or readv puts what it reads; none: the kernel refuses the call.
 std::optional<std::vector<iovec>> BuffersOf(const Task& task, const TrappedCall& call) {
   if (call.number == SYS_read) {
     return std::vector<iovec>{{reinterpret_cast<void*>(call.args[1]), call.args[2]}};
@@ -53,7 +53,7 @@ std::optional<std::vector<iovec>> BuffersOf(const Task& task, const TrappedCall&
   return buffers;
 }
 
-// Fills a piece of the client's memory. What came of it before the memory ended.
+// Fills a piece of the client's memory. Returns how many bytes were filled before the memory ended.
 std::uint64_t Draw(Task& task, std::uint64_t address, std::uint64_t size) {
   std::array<char, 65536> drawn;
   std::uint64_t done = 0;
@@ -77,8 +77,8 @@ std::int64_t ReadBytes(Task& task, const std::vector<iovec>& buffers) {
   return static_cast<std::int64_t>(done);
 }
 
-// The kernel makes an identifier, whose digits are drawn anew. What has been read of the file is so
-// for the client, too: both have the same open file.
+// The kernel makes an identifier, whose digits are drawn anew. The read counts for the client, too:
+// both have the same open file.
 std::int64_t ReadUuid(Task& task, int fd, const std::vector<iovec>& buffers) {
   std::uint64_t room = 0;
   for (const iovec& buffer : buffers) room += std::min<std::uint64_t>(buffer.iov_len, INT_MAX);

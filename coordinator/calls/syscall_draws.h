@@ -16,11 +16,12 @@ class SyscallDraws {
  public:
   explicit SyscallDraws(const RunState& run) : run_(run) {}
 
-  // getrandom, which is trapped under fixed accounting only. What the kernel would return.
+  // getrandom, which is trapped under fixed accounting only. Returns what the kernel would return.
   static std::int64_t GetRandom(Task& task, const TrappedCall& call);
 
   // Carries out a read or readv of `fd`, the descriptor of the call, if that is a file of random
-  // numbers, and the run's draws repeat. The result is in task.trap_result. False: it is not.
+  // numbers, and the run's draws repeat. The result is in task.trap_result. False: the read was not
+  // carried out.
   bool Read(Task& task, const TrappedCall& call, const RemoteDescriptor& fd) const;
 
  private:

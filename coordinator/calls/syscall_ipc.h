@@ -1,5 +1,6 @@
-// System V semaphores and message queues, POSIX message queues, and sigtimedwait, called raw. What
-// has no deadline the kernel waits for itself, and keeps the order; what has one waits here.
+// System V semaphores and message queues, POSIX message queues, and sigtimedwait, called raw. A
+// System V call without a deadline waits in the kernel, which keeps the order; the other calls wait
+// here.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -30,13 +31,13 @@ class SyscallIpc {
   // rt_sigtimedwait.
   void AcceptSignal(Task& task, const TrappedCall& call);
 
-  // What a call returns whose deadline has come.
+  // The result of a call whose deadline has come.
   static std::int64_t ResultAtDeadline(const TrappedCall& call);
   // The object that a System V call is about.
   static KernelObject ObjectOf(const TrappedCall& call);
 
  private:
-  // As the call's timeout says it; false if the kernel has to judge it.
+  // The deadline that the call's timeout says; false if the kernel has to judge the timeout.
   bool DeadlineAfter(const Task& task, std::uint64_t address, VirtualTime* deadline) const;
   bool DeadlineAt(const Task& task, std::uint64_t address, VirtualTime* deadline) const;
 

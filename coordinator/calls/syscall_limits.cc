@@ -18,7 +18,7 @@ bool HasRight(const Credentials& caller) {
   return caller.Has(kCapSysResource);
 }
 
-// As prlimit demands it of who asks about another process.
+// As prlimit demands of a process that asks about another one.
 bool MayLookAt(const Credentials& caller, const Process& process) {
   const Credentials its = ReadCredentials(process.pid);
   return HasRight(caller) ||
@@ -32,7 +32,7 @@ std::int64_t SyscallLimits::Call(Task& task, const TrappedCall& call) const {
   std::uint64_t given = 0, asked = 0;
   if (call.number == SYS_prlimit64) {
     auto pid = static_cast<pid_t>(call.args[0]);
-    // Who lives in a PID namespace of its own is answered of itself only.
+    // A process in a PID namespace of its own gets an answer about itself only.
     if (pid != 0 && process->pid_namespace != 0) {
       pid = ThreadByOwnNumber(process->pid, pid) == process->pid ? process->pid : -1;
     }
@@ -47,7 +47,7 @@ std::int64_t SyscallLimits::Call(Task& task, const TrappedCall& call) const {
     if (call.args[1] == 0) return -EFAULT;
   }
   if (process == nullptr) {
-    task.trap_continues = true;  // one of another run, or of nobody
+    task.trap_continues = true;  // a process of another run, or of nobody
     return 0;
   }
   rlimit limit{};

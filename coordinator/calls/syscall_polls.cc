@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::size_t kMostPolled = 65'536, kSets = 3;
 
-// What goes with a mask, if there is one.
+// Whether the size that goes with a mask, if there is one, is right.
 bool IsSoundMask(std::uint64_t mask, std::uint64_t size) { return mask == 0 || size == 8; }
 
 std::optional<std::vector<shm::WaitFd>> PolledFds(const Task& task, const TrappedCall& call) {
@@ -46,7 +46,7 @@ std::optional<std::vector<shm::WaitFd>> PolledFds(const Task& task, const Trappe
   return waited;
 }
 
-// So many descriptors the kernel looks at: no more than the process's table has room for.
+// How many descriptors the kernel looks at: no more than the process's table has room for.
 std::size_t SelectedCount(const Task& task, const TrappedCall& call) {
   const auto count = static_cast<std::size_t>(std::max(0, static_cast<int>(call.args[0])));
   return count <= FD_SETSIZE ? count : std::min(count, RoomForDescriptors(task.process->pid));
@@ -96,7 +96,7 @@ bool IsSoundEpollWait(const Task& task, const TrappedCall& call) {
 std::int64_t SyscallPolls::Poll(Task& task, const TrappedCall& call) {
   std::int64_t timeout_ns = 0;
   task.trap_continues = true;
-  // What is wrong with it the kernel says best.
+  // The kernel says best what is wrong with the call.
   if (!TimeoutOf(task, call, &timeout_ns) || !MaskOf(task, call).has_value()) return 0;
   const auto waited = FdsOf(task, call);
   if (!waited.has_value()) return 0;
@@ -156,7 +156,8 @@ bool SyscallPolls::TimeoutOf(Task& task, const TrappedCall& call, std::int64_t* 
   return true;
 }
 
-// What the call waits for; none where something is wrong with it, which the kernel says best.
+// The descriptors that the call waits for; none where something is wrong with the call, which the
+// kernel says best.
 std::optional<std::vector<shm::WaitFd>> SyscallPolls::FdsOf(const Task& task,
                                                             const TrappedCall& call) {
   switch (call.number) {
@@ -172,8 +173,8 @@ std::optional<std::vector<shm::WaitFd>> SyscallPolls::FdsOf(const Task& task,
   }
 }
 
-// The mask that the call sets while it waits: none where there is something wrong with it. 0: it
-// sets none.
+// The address of the mask that the call sets while it waits: none where there is something wrong
+// with the mask. 0: the call sets none.
 std::optional<std::uint64_t> SyscallPolls::MaskOf(const Task& task, const TrappedCall& call) {
   std::uint64_t mask[2] = {0, sizeof(std::uint64_t)};  // where it is, and its size
   switch (call.number) {
@@ -197,8 +198,8 @@ std::optional<std::uint64_t> SyscallPolls::MaskOf(const Task& task, const Trappe
   return is_wrong ? std::nullopt : std::optional(mask[0]);
 }
 
-// The signals that end the call though the thread blocks them: its mask lets them in. Those that do
-// nothing, or only stop the thread, do not.
+// The signals that end the call though the thread blocks them: the call's mask lets them in.
+// Signals that do nothing, or only stop the thread, do not end it.
 std::uint64_t SyscallPolls::SignalsOf(const Task& task, const TrappedCall& call) {
   constexpr std::uint64_t kNoEnd = SignalBit(SIGCHLD) | SignalBit(SIGCONT) | SignalBit(SIGURG) |
                                    SignalBit(SIGWINCH) | SignalBit(SIGTSTP) | SignalBit(SIGTTIN) |
@@ -213,7 +214,7 @@ std::uint64_t SyscallPolls::SignalsOf(const Task& task, const TrappedCall& call)
 
 namespace {
 
-// What is under a number now: events that are there, of those asked for and of those that nobody
+// The events at the file that is under a number now, of those asked for and of those that nobody
 // has to ask for.
 std::uint32_t EventsAt(const Task& task, int number, std::uint32_t asked) {
   const RemoteDescriptor looked_at(task, number);
@@ -236,7 +237,8 @@ std::int64_t PollByNumber(const Task& task, const TrappedCall& call) {
   return WriteMemory(task.process->pid, call.args[0], fds.data(), size) ? found : -EFAULT;
 }
 
-// Each set's descriptors are those with one of these. What has been closed meanwhile is in all.
+// The descriptors in each set are those with one of these events. A descriptor that has been closed
+// meanwhile is in all sets.
 constexpr std::uint32_t kInSet[kSets] = {POLLIN | POLLRDNORM | POLLRDBAND | POLLHUP | POLLERR,
                                          POLLOUT | POLLWRNORM | POLLWRBAND | POLLERR, POLLPRI};
 

@@ -1,5 +1,5 @@
-// poll, select, epoll_wait and their kin, made raw: what they wait for is waited for here; then the
-// kernel carries them out, and does not have to wait.
+// poll, select, epoll_wait and their kin, made raw: the thread waits here for what the call waits
+// for; then the kernel carries the call out, and does not have to wait.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -20,13 +20,13 @@ class SyscallPolls {
   SyscallPolls(Waker& waker, DescriptorWaits& descriptors)
       : waker_(waker), descriptors_(descriptors) {}
 
-  // What the call returns where the kernel does not carry it out.
+  // The result of the call where the kernel does not carry it out.
   std::int64_t Poll(Task& task, const TrappedCall& call);
-  // What such a call finds that has waited, and whose numbers mean others than `file` and its like
-  // by now. As the kernel has it, it looks for them by their numbers each time; but for an epoll
-  // set, which is its file.
+  // The result of such a call that has waited, and whose numbers mean files other than `file` and
+  // its like by now. As in the kernel, the call looks for files by their numbers each time; but for
+  // an epoll set, which is its file.
   static std::int64_t Again(const Task& task, const TrappedCall& call, int file);
-  // A wait for descriptors has timed out: none is ready.
+  // A wait for descriptors has timed out: no descriptor is ready.
   static void ClearResult(const Task& task, const TrappedCall& call);
 
  private:

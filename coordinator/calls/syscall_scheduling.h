@@ -16,7 +16,7 @@ class SyscallScheduling {
  public:
   SyscallScheduling(RunState& run, SchedulingCalls& calls) : run_(run), calls_(calls) {}
 
-  // What the call returns: negative for an errno.
+  // The result of the call: negative for an errno.
   std::int64_t Call(Task& task, const TrappedCall& call);
   // The same of getcpu: the robot's core that the thread is on.
   static std::int64_t CoreOf(const Task& task, const TrappedCall& call);

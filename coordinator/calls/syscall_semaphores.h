@@ -1,4 +1,4 @@
-// What System V semaphores would do to a call that a thread makes raw.
+// The effect that System V semaphores would have on a call that a thread makes raw.
 //
 // Asks the kernel, and reads the client's memory. For the coordinator's thread only.
 #pragma once

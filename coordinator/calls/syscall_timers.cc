@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::uint64_t kAbsolute = 1;  // TIMER_ABSTIME, TFD_TIMER_ABSTIME
 
-// What timer_create is asked for. 0, or its error.
+// The kind of timer that timer_create is asked for. 0, or the call's error.
 int PosixKind(const Task& task, clockid_t id, const sigevent& event, shm::TimerKind* kind) {
   const shm::ClockOfId clock = shm::ClockOf(id);
   if (const int error = shm::ErrorOfTimerOn(clock); error != 0) return error;
@@ -83,7 +83,8 @@ SyscallTimers::Found SyscallTimers::Find(const Task& task, int number) {
   return {};
 }
 
-// One that was made by the call itself, which the kernel carries out, or that comes from elsewhere.
+// A timer that was made by the call itself, which the kernel carries out, or that comes from
+// elsewhere.
 SyscallTimers::Found SyscallTimers::Adopt(const Task& task, int number) {
   Process& process = *task.process;
   UniqueFd fd = TimerCalls::DescriptorOf(process, number);
@@ -103,8 +104,8 @@ std::int64_t SyscallTimers::NowOf(const Task& task, const Process& owner,
   return known == nullptr ? 0 : known->charged.ns();
 }
 
-// Sets it (first_ns 0: disarms it) and returns what it was set to: until the next expiry, and the
-// interval.
+// Sets the timer (first_ns 0: disarms it) and returns what it was set to: the time until the next
+// expiry, and the interval.
 itimerspec SyscallTimers::Exchange(Task& task, const Found& found, bool sets, std::int64_t first_ns,
                                    std::int64_t interval_ns, bool is_date) {
   const std::int64_t now = NowOf(task, *found.owner, *found.owner->timers.KindOf(found.id));
@@ -183,7 +184,7 @@ void SyscallTimers::Call(Task& task, const TrappedCall& call) {
       task.trap_result = Create(task, call);
       return;
     case SYS_timerfd_create:
-      task.trap_continues = true;  // it is known once it is set
+      task.trap_continues = true;  // the timer is known once it is set
       return;
     case SYS_setitimer:
     case SYS_getitimer:
@@ -198,7 +199,7 @@ void SyscallTimers::Call(Task& task, const TrappedCall& call) {
         found = Adopt(task, number);
       }
       if (found.owner == nullptr) {
-        task.trap_continues = true;  // what is wrong with it the kernel says best
+        task.trap_continues = true;  // the kernel says best what is wrong
       } else if (call.number == SYS_timerfd_settime) {
         constexpr std::uint64_t kFlags = TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET;
         task.trap_result = (call.args[1] & ~kFlags) != 0 ? -EINVAL : Set(task, found, call);

@@ -1,5 +1,5 @@
-// Timers whose calls are made raw: they are the same as those that the shim makes for its program,
-// so a timer made one way can be set the other way.
+// Timers whose calls are made raw. These timers are the same as those that the shim makes for its
+// program, so a timer made one way can be set the other way.
 //
 // Results are the kernel's: negative for an errno. For the coordinator's thread only.
 #pragma once
@@ -25,7 +25,8 @@ class SyscallTimers {
 
   // task.trap_result is what the call returns; or the kernel carries it out.
   void Call(Task& task, const TrappedCall& call);
-  // Whose descriptor it is, too: timers made before a fork are the parent's. No owner: it is none.
+  // The timer of a descriptor, and whose it is: timers made before a fork are the parent's. No
+  // owner: the descriptor is no timer's.
   Found Find(const Task& task, int number);
 
  private:

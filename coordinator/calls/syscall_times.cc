@@ -52,7 +52,7 @@ std::int64_t SyscallTimes::SetClock(Task& task, const TrappedCall& call) {
   return shm::IsValid(date) ? dates_.Set(task, shm::ToNs(date)) : -EINVAL;
 }
 
-// The host's clock is read for the program: it could change what is asked for meanwhile.
+// The host's clock is read for the program: the program could change what it asks for meanwhile.
 std::int64_t SyscallTimes::Adjust(const Task& task, const TrappedCall& call) const {
   timex state{};
   const std::uint64_t to = call.args[call.number == SYS_adjtimex ? 0 : 1];

@@ -17,7 +17,7 @@ namespace tcs {
 
 namespace {
 
-constexpr std::int64_t kCounter = sizeof(std::uint64_t);  // what eventfds and timerfds give
+constexpr std::int64_t kCounter = sizeof(std::uint64_t);  // bytes that eventfds and timerfds give
 
 struct Transfer {
   bool reads = false;
@@ -50,7 +50,7 @@ Transfer TransferOf(const TrappedCall& call) {
   }
 }
 
-// What read, write and their kin are to transfer; -1: the kernel refuses it.
+// The bytes that read, write and their kin are to transfer; -1: the kernel refuses the call.
 std::int64_t BytesOf(const Task& task, const TrappedCall& call) {
   if (call.number == SYS_read || call.number == SYS_write) {
     return static_cast<std::int64_t>(std::min<std::uint64_t>(call.args[2], INT_MAX));
@@ -69,7 +69,7 @@ std::int64_t BytesOf(const Task& task, const TrappedCall& call) {
   return bytes;
 }
 
-// 0: it is not known.
+// 0: the number is not known.
 std::int64_t BytesToSend(const Task& task, const TrappedCall& call) {
   if (call.number == SYS_sendto) return static_cast<std::int64_t>(call.args[2]);
   const bool writes = call.number == SYS_write || call.number == SYS_writev;
@@ -94,7 +94,7 @@ bool IsMessage(const Task& task, const TrappedCall& call) {
          message.msg_iovlen <= IOV_MAX;
 }
 
-// What is wrong with a socket, asked for in a way that takes and gives nothing.
+// Whether something is wrong with a socket, asked for in a way that takes and gives nothing.
 bool SocketFailsAtOnce(const RemoteDescriptor& fd, int flags, bool reads) {
   char byte;
   if (reads) {
@@ -144,7 +144,7 @@ void SyscallTransfers::Handle(Task& task, const TrappedCall& call) {
   task.trap_continues = true;
   if (!fd.CanWait()) return;
   if (transfer.reads) fd.AcknowledgeAtOnce();
-  // Those who connect wait for room in the backlog.
+  // Threads that connect wait for room in the backlog.
   if (call.number == SYS_accept || call.number == SYS_accept4) {
     task.after_call = AfterCall::kBacklogs;
   }

@@ -1,5 +1,5 @@
-// Trapped calls that transfer data, or connect: each waits here until the kernel can carry it out,
-// or would have refused it at once.
+// Trapped calls that transfer data, or connect: each call waits here until the kernel can carry it
+// out, or would have refused it at once.
 //
 // For the coordinator's thread only.
 #pragma once

@@ -16,7 +16,7 @@ namespace tcs {
 
 namespace {
 
-// None: of nobody here.
+// None: the clock is of nobody here.
 std::optional<std::int64_t> ChargedNs(const RunState& run, const Task& task,
                                       const shm::ClockOfId& clock) {
   if (clock.kind == shm::ClockKind::kThreadCpu) {
@@ -35,7 +35,7 @@ std::int64_t SyscallUsage::ReadClock(Task& task, const TrappedCall& call) const 
   const shm::ClockOfId clock = shm::ClockOf(static_cast<clockid_t>(call.args[0]));
   const std::optional<std::int64_t> charged = ChargedNs(run_, task, clock);
   if (!charged.has_value()) {
-    task.trap_continues = true;  // the kernel knows it, or that there is none
+    task.trap_continues = true;  // the kernel knows the clock, or that there is none
     return 0;
   }
   return Write(task, call.args[1], ToTimespec(*charged)) ? 0 : -EFAULT;

@@ -1,5 +1,5 @@
-// What threads ask of the processor time that was charged, and of the computer's uptime, by calls
-// made raw. Results are the kernel's: negative for an errno.
+// Raw calls by which threads ask for the processor time that was charged, and for the computer's
+// uptime. Results are the kernel's: negative for an errno.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -20,8 +20,8 @@ class SyscallUsage {
 
   // clock_gettime of a clock of processor time, the caller's or another's.
   std::int64_t ReadClock(Task& task, const TrappedCall& call) const;
-  // getrusage. What was charged is divided into user and system time as the kernel divides it; set
-  // costs are user time.
+  // getrusage. The charge is divided into user and system time as the kernel divides it; set costs
+  // are user time.
   std::int64_t GetUsage(const Task& task, const TrappedCall& call) const;
   std::int64_t Times(const Task& task, const TrappedCall& call) const;
   // sysinfo: the host's, with the robot's uptime.

@@ -21,12 +21,12 @@ bool IsOfOwner(const TrappedCall& call) {
 
 }  // namespace
 
-// As the shim does it for those that it sees; and those that the C library makes for it inside come
-// here, too.
+// Does what the shim does for the calls that it sees; the calls that the C library makes for the
+// shim inside come here, too.
 void Syscalls::Signal(Task& task) {
   task.trap_continues = true;
   if (OnlyAsks(task.trapped_call)) return;
-  // The one call that the shim waits for; any other is a handler's, which interrupts it.
+  // The shim waits for this one call; any other call is a handler's, which interrupts the shim.
   if (SlotOf(task).signals.load() == shm::kSendsByLibrary && task.sending.number == 0) {
     task.sending = task.trapped_call;
     return;
@@ -37,13 +37,13 @@ void Syscalls::Signal(Task& task) {
 }
 
 // The kernel puts the mask in place, and ends the wait once a handler has run: at the virtual time
-// at which the signal was sent, as it does for all who wait.
+// at which the signal was sent, as it does for all threads that wait.
 void Syscalls::Suspend(Task& task) {
   task.trap_continues = true;
   task.expects_kernel = true;
 }
 
-// The kernel keeps the order of those who wait for a lock.
+// The kernel keeps the order of the threads that wait for a lock.
 void Syscalls::Lock(Task& task) {
   task.trap_continues = true;
   task.expects_kernel = true;
@@ -162,7 +162,7 @@ bool Syscalls::Handle(Task& task, const TrappedCall& call) {
     case SYS_getitimer:
     case SYS_alarm:
       parts_.timers.Call(task, call);
-      return true;  // it may have written to its descriptor
+      return true;  // the timer may have written to its descriptor
     case SYS_getrandom:
       task.trap_result = SyscallDraws::GetRandom(task, call);
       break;
@@ -210,7 +210,7 @@ bool Syscalls::Handle(Task& task, const TrappedCall& call) {
     case SYS_ioctl:
     case SYS_ptrace:
     case SYS_process_madvise:
-      task.trap_continues = true;  // unless it is about tcsim's own (guarded_calls.cc)
+      task.trap_continues = true;  // unless it is about tcsim's own processes (guarded_calls.cc)
       break;
     case SYS_landlock_create_ruleset:
       if (AsksForLandlockVersion(call.args)) {

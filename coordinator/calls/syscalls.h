@@ -1,6 +1,6 @@
 // Trapped calls other than futex: made raw, or by the C library from inside, where no interposed
-// symbol sees them. What they wait for is waited for here; then the kernel carries them out, and
-// does not have to wait.
+// symbol sees them. The thread waits here for what such a call waits for; then the kernel carries
+// the call out, and does not have to wait.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -43,13 +43,13 @@ class Syscalls {
     SyscallLimits& limits;
   };
 
-  // `yield` lets equals have their turn (true: as Handle); `exit` ends the thread.
+  // `yield` lets equal threads have their turn (true: as Handle); `exit` ends the thread.
   Syscalls(RunState& run, Waker& waker, Parts parts, std::function<bool(Task&)> yield,
            std::function<void(Task&, const TrappedCall&)> exit)
       : run_(run), waker_(waker), parts_(parts), yield_(std::move(yield)), exit_(std::move(exit)) {}
 
-  // task.trap_result is what the call returns, unless the thread waits or the kernel carries it
-  // out (task.trap_continues). True: there may be more by now that belongs to this moment.
+  // task.trap_result is what the call returns, unless the thread waits or the kernel carries it out
+  // (task.trap_continues). True: there may be more events by now that belong to this moment.
   bool Handle(Task& task, const TrappedCall& call);
 
  private:

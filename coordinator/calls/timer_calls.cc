@@ -86,7 +86,8 @@ void TimerCalls::Delete(Process& process, std::int64_t id) {
   process.timer_fds.erase(id);
 }
 
-// The timer's last descriptor is closed. A call that is on it holds it for as long as that lasts.
+// The timer's last descriptor is closed. A call on the descriptor holds the timer for as long as
+// the call lasts.
 void TimerCalls::Close(Process& process, std::int64_t id) {
   process.closed_timers.push_back(id);
   DeleteClosed(process);
@@ -144,7 +145,7 @@ std::int64_t TimerCalls::OverrunsAt(Process& process, std::int64_t id, VirtualTi
   return process.timers.Overruns(id);
 }
 
-// What has run out by the time of the call is there when it returns.
+// Expirations by the time of the call are there when the call returns.
 bool TimerCalls::BringUpToDate(Process& owner, const Task& asking, std::int64_t id) {
   if (!owner.timers.IsBehind(id, asking.reached)) return false;
   const EventTime when{asking.reached};
@@ -153,7 +154,7 @@ bool TimerCalls::BringUpToDate(Process& owner, const Task& asking, std::int64_t 
   return wrote;
 }
 
-// Fires what has run out for one process; true if a descriptor was written to.
+// Fires the timers of one process that have run out; true if a descriptor was written to.
 bool TimerCalls::Expire(Process& process, VirtualTime now) {
   signals_.NoteAccepted(process, now);
   const std::vector<ProcessTimers::RanOut> ran_out = process.timers.Expire(now);

@@ -1,5 +1,5 @@
-// The timers of clients: setitimer, alarm, timerfd and timer_create. What runs out at one instant
-// fires there. The rules of one process's timers are ProcessTimers'.
+// The timers of clients: setitimer, alarm, timerfd and timer_create. A timer that runs out at an
+// instant fires there. The rules of one process's timers are ProcessTimers'.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -19,14 +19,15 @@ class TimerCalls {
   TimerCalls(RunState& run, Waker& waker, TimerSignals& signals)
       : run_(run), waker_(waker), signals_(signals) {}
 
-  // What a notification asks for of a timer of `process`, by one of its threads, or of its
-  // children, which have its descriptors. True: a timer descriptor was written to.
+  // Does what a notification asks for of a timer of `process`. The asking thread is the process's,
+  // or one of its children's, which have its descriptors. True: a timer descriptor was written to.
   bool Handle(Process& process, Task& task, const shm::Notification& note);
 
-  // Deadlines of threads and timers that have come on the robot. True: a timer descriptor was
-  // written to.
+  // Ends waits and fires timers of the robot whose deadlines have come. True: a timer descriptor
+  // was written to.
   bool FireDue(Robot& robot, VirtualTime now);
-  // Timers on processor time run out while their process runs; it is told at its next dispatch.
+  // Timers on processor time run out while their process runs; the process is told at its next
+  // dispatch.
   void ExpireCpu(const Task& ran);
   static ProcessTimers::CpuUsed CpuUsedBy(const Task& task);
 
@@ -36,9 +37,9 @@ class TimerCalls {
   static void Delete(Process& process, std::int64_t id);
   // A process's timer_create timers end when it executes another program.
   static void DeletePosix(Process& process);
-  // The thread of the process's that it gives this number, by tcsim's; 0: none.
+  // The thread to which the process gives this number, by tcsim's number; 0: none.
   static pid_t ThreadNamed(const Process& process, pid_t said);
-  // Our copy of a process's descriptor; none if that is no timer.
+  // Our copy of a process's descriptor; none if the descriptor is no timer's.
   static UniqueFd DescriptorOf(const Process& process, int number);
 
  private:

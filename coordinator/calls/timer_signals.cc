@@ -13,7 +13,7 @@ namespace tcs {
 
 namespace {
 
-// Would a thread of these sets run a handler for it?
+// Whether a thread with these sets would run a handler for the signal.
 bool Handles(const Task& task, const SignalSets& sets, int signal) {
   return (sets.caught & ~BlockedOf(task, sets) & SignalBit(signal)) != 0;
 }
@@ -34,7 +34,7 @@ void Send(Process& process, const TimerSignal& signal, pid_t tid) {
   }
 }
 
-// One of its number is.
+// Whether a signal of that number is pending.
 bool MayBePending(const Process& process, const ProcessTimers::SentSignal& sent) {
   const SignalSets sets = ReadSignalSets(sent.to != 0 ? sent.to : process.pid);
   const std::uint64_t pending = sent.to != 0 ? sets.own_pending : sets.shared_pending;
@@ -43,7 +43,8 @@ bool MayBePending(const Process& process, const ProcessTimers::SentSignal& sent)
 
 }  // namespace
 
-// The thread that waits to accept it, 0 if there is none. The kernel, too, prefers it to others.
+// The thread that waits to accept the signal, 0 if there is none. The kernel, too, prefers that
+// thread to others.
 pid_t TimerSignals::AccepterOf(const Process& process, const TimerSignal& signal) {
   for (const Task* task : process.robot->tasks) {
     const auto* wait = task->Awaits<awaited::Signals>();
@@ -54,9 +55,9 @@ pid_t TimerSignals::AccepterOf(const Process& process, const TimerSignal& signal
   return 0;
 }
 
-// Null if nobody runs a handler, or only one that the kernel holds in a call. The kernel, too,
-// gives what has run out by computing to the thread that computes, before it asks others: whoever
-// has a lower priority might never come to its handler.
+// Null if no thread runs a handler, or only a thread that the kernel holds in a call. The kernel,
+// too, gives the signal of a timer that has run out by computing to the thread that computes,
+// before it asks other threads: a thread of lower priority might never come to its handler.
 Task* TimerSignals::TakerOf(const Process& process, const TimerSignal& signal) const {
   Task* computed = signal.tid == 0 ? run_.table.Living(signal.computed) : nullptr;
   const auto handles = [&](Task* task) {

@@ -22,10 +22,10 @@ class TimerSignals {
   void Route(Process& process, EventTime when);
   // Sends the signals that have waited for the dispatch of this thread, which is now.
   static void SendTo(const Task& task);
-  // Finds out which timers' signals have been accepted by `now`. While one of a signal's number is
-  // pending where it was sent to it counts as not: whose it is cannot be seen. What the kernel has
-  // dropped once it was no longer blocked, for it does nothing, has for overruns what has run out
-  // until `now`.
+  // Finds out which timers' signals have been accepted by `now`. A signal counts as not accepted
+  // while a signal of its number is pending where it was sent to: whose that is cannot be seen. A
+  // signal that does nothing is dropped by the kernel once it is no longer blocked; its overruns
+  // are the expirations until `now`.
   void NoteAccepted(Process& process, VirtualTime now) const;
   // Whether the timer's signal that was sent last may be pending still.
   static bool IsPending(const Process& process, std::int64_t timer_id);
@@ -33,7 +33,7 @@ class TimerSignals {
  private:
   static pid_t AccepterOf(const Process& process, const TimerSignal& signal);
   Task* TakerOf(const Process& process, const TimerSignal& signal) const;
-  // Nobody will hear of it.
+  // Whether nobody will hear of the signal.
   bool IsLost(const Process& process, int number, pid_t tid) const;
 
   RunState& run_;

@@ -32,8 +32,8 @@ bool TrappedCalls::Handle(Task& task, const TrappedCall& call) {
 }
 
 // A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it
-// has not registered yet. The kernel carries out what it calls; but those whom it wakes may wait
-// here.
+// has not registered yet. The kernel carries out what the thread calls; but the threads that it
+// wakes may wait here.
 void TrappedCalls::HandleUnregistered(const TrappedCall& call, EventTime when) {
   const bool concerns_others = call.number == SYS_futex || call.number == SYS_bind;
   const pid_t pid = concerns_others ? ProcessOfThread(call.tid) : -1;
@@ -48,14 +48,15 @@ void TrappedCalls::HandleUnregistered(const TrappedCall& call, EventTime when) {
   guard_.LetThrough(call);
 }
 
-// The last call of a thread, whichever way it ends: it has no destructors to run any more, and no
-// signals to handle.
+// The last call of a thread, whichever way it ends: the thread has no destructors to run any more,
+// and no signals to handle.
 void TrappedCalls::Exit(Task& task, const TrappedCall& call) {
   task.trap_id = 0;
   thread_exit_.EndAndWake(task, {task.reached});
   ContinueTrapped(call.listener, call.id);
-  // A thread that joins it looks at a word that the kernel clears. Were the kernel not through with
-  // it, the coordinator would have to sleep for that, and threads would run whose turn it is not.
+  // A thread that joins this one looks at a word that the kernel clears. Were the kernel not
+  // through with this one, the coordinator would have to sleep for that, and threads would run
+  // whose turn it is not.
   executor_.LetKernelFinish(call.tid);
   if (IsExiting(call.tid)) run_.exiting.push_back(call.tid);
 }

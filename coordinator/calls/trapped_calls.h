@@ -31,10 +31,10 @@ class TrappedCalls {
         local_sockets_(local_sockets),
         spawns_(spawns) {}
 
-  // That of a thread that has stopped in it. True: there may be more by now that belongs to this
-  // moment.
+  // Handles the call of a thread that has stopped in it. True: there may be more events by now that
+  // belong to this moment.
   bool Handle(Task& task, const TrappedCall& call);
-  // That of a thread that tcs does not know, or that has not registered yet.
+  // Handles the call of a thread that tcs does not know, or that has not registered yet.
   void HandleUnregistered(const TrappedCall& call, EventTime when);
   // The last call of a thread.
   void Exit(Task& task, const TrappedCall& call);

@@ -13,14 +13,15 @@
 
 namespace tcs {
 
-// A signal is to end a trapped call that waits: the kernel does, as it ends its own. What it finds
-// in the thread decides, the handler's flags or that no handler runs, and not what is known here.
+// A signal is to end a trapped call that waits: the kernel ends the call, as it ends its own. The
+// kernel decides by what it finds in the thread, the handler's flags or that no handler runs, and
+// not by what is known here.
 void TrappedWaits::Interrupt(Task& task) {
   const Wait& wait = *task.wait;
   task.trap_continues = false;
   task.trap_result =
       wait.deadline.IsNever() ? -by_signal::kAsFlagsSay : -by_signal::kAgainUnlessRun;
-  // What accepts signals is not made again for others.
+  // A call that accepts signals is not made again for other signals.
   if (wait.As<awaited::Signals>() != nullptr) task.trap_result = -by_signal::kAgainUnlessRun;
   if (const auto* futex = wait.As<awaited::Futex>(); futex != nullptr) {
     // A lock is never given up for a signal: the C library would take it for acquired.
@@ -51,7 +52,7 @@ void TrappedWaits::Finish(Task& task, shm::WakeReason reason) {
   if (const auto* queue = task.Awaits<awaited::Queue>(); queue != nullptr && !timed_out) {
     if (!AreSemaphores(static_cast<int>(queue->of.id))) {
       task.trap_continues = false;
-      task.trap_result = -EIDRM;  // they were there when it began to wait
+      task.trap_result = -EIDRM;  // the semaphores were there when the wait began
     }
   }
   if (timed_out &&
@@ -69,7 +70,7 @@ void TrappedWaits::Finish(Task& task, shm::WakeReason reason) {
   task.trap_continues = false;
   if (watched->transfers) {
     task.trap_result = SyscallIpc::ResultAtDeadline(task.trapped_call);
-  } else if (!CallFiles::Keeps(task, *watched)) {  // which are looked at once more
+  } else if (!CallFiles::Keeps(task, *watched)) {  // kept files are looked at once more
     SyscallPolls::ClearResult(task, task.trapped_call);
   }
 }

@@ -1,4 +1,4 @@
-// What a trapped call returns that has waited.
+// The results of trapped calls that have waited.
 //
 // For the coordinator's thread only.
 #pragma once

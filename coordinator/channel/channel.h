@@ -1,10 +1,10 @@
-// How programs meet their robot: what sensors read goes out at an Outlet, commands come in at an
-// Inlet. What carries both is a transport: a folder here, and a few lines in open/channels.cc.
+// How programs meet their robot: readings of sensors go out at an Outlet, commands come in at an
+// Inlet. A transport carries both: a folder here, and a few lines in open/channels.cc.
 //
-// Outlets and inlets carry, no more. When a sensor is sampled, what it reads, and when a command
-// acts is none of their business but world/'s.
+// Outlets and inlets only carry. world/ decides when a sensor is sampled, what it reads, and when a
+// command acts.
 //
-// Not thread-safe: the coordinator's thread calls them, and none of them waits.
+// Not thread-safe: the coordinator's thread calls outlets and inlets, and none of them waits.
 #pragma once
 
 #include <cstddef>
@@ -40,7 +40,8 @@ struct JointReading {
   JointState state;       // finite
 };
 
-// What a sensor reads at an instant: bodies, or the joints of a robot, or what it measures itself.
+// A sensor's reading at an instant: of bodies, or of the joints of a robot, or what the sensor
+// measures itself.
 struct Reading {
   VirtualTime at;
   std::vector<BodyReading> bodies;  // as the channel lists them
@@ -53,21 +54,21 @@ class Outlet {
  public:
   virtual ~Outlet() = default;
 
-  // The reading is to arrive at `arrives`, not before the ones sent earlier. True if it is out of
-  // the outlet's hands: others have it arrive then.
+  // The reading is to arrive at `arrives`, not before the ones sent earlier. True if the reading is
+  // out of the outlet's hands: then another part, such as the DDS hub, has it arrive.
   virtual bool Send(const Reading& reading, VirtualTime arrives) = 0;
 
-  // When the next of what it still has is due; never: it has nothing.
+  // When the next reading that the outlet still has is due; never: it has none.
   virtual VirtualTime NextDue() const = 0;
-  // Hands over what is due. True if there was anything.
+  // Hands over the readings that are due. True if there was one.
   virtual bool HandOver(VirtualTime now) = 0;
 
-  // How many readings it still has.
+  // How many readings the outlet still has.
   virtual std::size_t Kept() const { return NextDue().IsNever() ? 0 : 1; }
 
-  // At the run's end: why nothing of what was sent has reached a program, and how to mend that, as
-  // the rest of a sentence that begins with the channel's name. Empty: it has, or that cannot be
-  // told.
+  // At the run's end: why no reading that was sent has reached a program, and how to mend that, as
+  // the rest of a sentence that begins with the channel's name. Empty: a reading has, or that
+  // cannot be told.
   virtual std::string WhyUnheard() const { return {}; }
   // The same for readings that did not go out, whether or not a program was listening.
   virtual std::string WhatWasLost() const { return {}; }
@@ -80,23 +81,24 @@ class Outlet {
 template <class End>
 using Opened = std::variant<std::unique_ptr<End>, std::string>;
 
-// What the numbers of a command without wrenches are for.
+// The meaning of the numbers in a command without wrenches.
 struct GoalNames {
-  std::span<const std::string> names;               // that JointGoal::joint counts
-  JointQuantity quantity = JointQuantity::kEffort;  // what a number is that does not say it
+  std::span<const std::string> names;               // JointGoal::joint is an index into it
+  JointQuantity quantity = JointQuantity::kEffort;  // of a number that does not name one
   bool are_wheels = false;                          // a command says how fast the robot is to go
-  bool follow_trajectories = false;                 // a command is one
-  // The last so many of `names` are of joints that follow others: a command may name them, and what
-  // it says of them is left out by whoever takes it.
+  bool follow_trajectories = false;                 // a command is a trajectory
+  // The last `followers` of `names` are of joints that follow others: a command may name them, and
+  // the sink that takes the command leaves out what it says of them.
   std::size_t followers = 0;
 
   std::span<const std::string> Driven() const { return names.first(names.size() - followers); }
 };
 
 // The thread that has sent a command, and how long it had run by then, what was stolen from it
-// included (shm::RunTime). That is another number for each of its commands that its own computing
-// separates, also while its clock stands still (a clock that has shown stolen time waits until that
-// much has been computed). `id` 0: not known, firmware or a program outside the run.
+// included (shm::RunTime). Two commands of the thread have different run times if the thread has
+// computed between them, also while its clock stands still (a clock that has shown stolen time
+// waits until that much has been computed). `id` 0: not known, firmware or a program outside the
+// run.
 struct CommandSender {
   std::uint64_t id = 0;
   std::int64_t ran_ns = 0;
@@ -138,24 +140,26 @@ class Inlet {
  public:
   virtual ~Inlet() = default;
 
-  // Readable once something has come in; -1: it is asked again and again.
+  // A descriptor that is readable once something has come in; -1: the inlet is asked again and
+  // again.
   virtual int fd() const = 0;
-  // True for one end of a terminal. What a program writes to the other end is not there at once,
-  // but when it is received: so that is done whenever one has written to a terminal.
+  // True for one end of a terminal. Bytes that a program writes to the other end are not there at
+  // once, but when they are received: so the coordinator receives whenever a program has written to
+  // a terminal.
   virtual bool IsTerminal() const { return false; }
-  // Gives away what has come in by now, in the order of sending. `now` says who has sent it, if
-  // that is known.
+  // Gives away what has come in by now, in the order of sending. `now` says which thread has sent
+  // it, if that is known.
   virtual void Receive(const CommandSent& now, CommandSink& sink) = 0;
   // Gives away a datagram that did not come in at the descriptor, where that is a datagram socket.
   virtual void Accept(std::string_view /*datagram*/, const CommandSent&, CommandSink&) {}
 
-  // For a sentence about a channel of its: "nothing came in WHERE; let a client MEND".
+  // For a sentence about a channel of the inlet: "nothing came in WHERE; let a client MEND".
   struct Place {
     std::string where, mend;
   };
   virtual Place PlaceOf(std::size_t channel) const = 0;
 
-  // As Outlet's, of each that comes in.
+  // As Outlet::TellOf, for each datagram that comes in.
   virtual void TellOf(DatagramWatch&) {}
 };
 

@@ -1,4 +1,5 @@
-// Who is told of each datagram that goes over a channel, to say later which program had it.
+// An observer that is told of each datagram that goes over a channel, to say later which program
+// had the datagram.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +12,10 @@ namespace tcs {
 
 class DatagramWatch {
  public:
-  // One of that channel's readings is in the socket with the address.
+  // A reading of that channel is in the socket with the address.
   virtual void WorldSent(const std::string& channel, const shm::ReceiverAddress& to,
                          VirtualTime at) = 0;
-  // One has come in; channels of commands are numbered as in the scenario.
+  // A command has come in; channels of commands are numbered as in the scenario.
   virtual void WorldReceived(std::size_t channel, const CommandSent& sent) = 0;
 
  protected:

@@ -12,7 +12,7 @@ namespace tcs {
 
 class OnTheWay {
  public:
-  // Not before the last one.
+  // `arrives` is not before the last message's.
   void Add(std::string message, VirtualTime arrives) {
     messages_.push_back({arrives, std::move(message)});
   }
@@ -23,7 +23,7 @@ class OnTheWay {
 
   std::size_t size() const { return messages_.size(); }
 
-  // Calls `receive` with each that has arrived by `now`. True if there was one.
+  // Calls `receive` with each message that has arrived by `now`. True if there was one.
   template <class Receive>
   bool Arrive(VirtualTime now, Receive receive) {
     bool any = false;

@@ -1,4 +1,5 @@
-// What channels have in common that go the same way, and what they need of a run to be opened.
+// The things that channels of one transport have in common, and what channels need of a run to be
+// opened.
 #pragma once
 
 #include <functional>
@@ -8,7 +9,7 @@
 
 namespace tcs {
 
-// What the channels of one kind have in common, if anything.
+// The things that the channels of one kind have in common, if any.
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -19,8 +20,8 @@ class Transport {
 // A file that a robot's programs find under another name.
 struct FileAlias {
   std::string robot;
-  std::string name;  // that they open
-  std::string file;  // that is opened instead
+  std::string name;  // the name that programs open
+  std::string file;  // the file that is opened instead
 };
 
 // Has a socket made where programs reach that IPv4 address.

@@ -8,7 +8,8 @@
 
 namespace tcs {
 
-// Those that the scenario names, and those that go over several programs; empty, if there is none.
+// The chains that the scenario names, and the chains that go over several programs; empty, if there
+// is no such chain.
 std::string ChainTable(const std::vector<ChainFigures>& chains);
 
 }  // namespace tcs

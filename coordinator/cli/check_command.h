@@ -17,7 +17,7 @@ struct CheckArguments {
   std::vector<std::string> overlays;  // files
   std::vector<std::string> set;       // KEY=VALUE
   bool strict = false;                // each warning is an error
-  bool verbose = false;               // each thing that a warning is about
+  bool verbose = false;               // list each thing that a warning is about
 };
 
 // Adds the command, which fills `arguments` in when it is parsed.
@@ -27,8 +27,8 @@ const CLI::App* AddCheck(CLI::App* app, CheckArguments* arguments);
 // is sound. The exit status.
 int CheckCommand(const CheckArguments& arguments);
 
-// That it is sound, and what it has; warnings to stderr, which `strict` makes errors. The exit
-// status.
+// Says that the scenario is sound, and what it has. Warnings go to stderr; `strict` makes them
+// errors. The exit status.
 int SaySound(const Scenario& scenario, bool strict);
 
 }  // namespace tcs

@@ -17,7 +17,7 @@ namespace tcs {
 
 namespace {
 
-// "5%", "5 %" or "0.05"; none if it is neither. "5" may be meant as either.
+// Reads "5%", "5 %" or "0.05"; none if the text has neither form. "5" may be meant as either.
 std::optional<double> ShareOf(std::string text) {
   const bool is_percent = !text.empty() && text.back() == '%';
   if (is_percent) text.pop_back();

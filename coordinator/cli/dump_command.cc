@@ -69,12 +69,12 @@ Json StateOf(const FoundRun& run, const StateAnswer& answer) {
     state["run"] = {{"folder", run.folder}};
     state["outside"] = SeenFromOutside(run);
   }
-  // As the asker knows it, who may see other numbers than the run.
+  // The coordinator as the asker knows it: the asker may see other numbers than the run.
   state["run"]["coordinator"] = run.coordinator;
   return state;
 }
 
-// A terminal's; what goes to a file has long lines.
+// The terminal's width; a file gets long lines.
 std::size_t ColumnsOfStdout() {
   winsize size{};
   const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -97,7 +97,7 @@ int DumpCommand(const DumpArguments& arguments) {
     Print("{}", arguments.as_json ? state.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"
                                   : StateText(state, ColumnsOfStdout()));
   } catch (const Json::exception&) {
-    // Anybody who may ask may also write there.
+    // Any process that may ask may also write into the answer.
     return Fail("the run's answer is damaged: another process has written to it; ask again");
   }
   return kSucceeded;

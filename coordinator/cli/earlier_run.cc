@@ -24,7 +24,7 @@ void RemoveLogsOfEarlierRun(const std::string& folder, const Scenario& scenario)
     for (const auto& [name, client] : summary["clients"].items()) {
       std::string base = name;
       std::ranges::replace(base, '/', '-');
-      // A name is two names with a slash between: the rest is no file of ours.
+      // A client's name is two names with a slash between: any other name is no file of ours.
       if (std::ranges::count(name, '/') != 1 || name.find("..") != std::string::npos) continue;
       if (ours.contains(base)) continue;
       std::error_code ignored;

@@ -48,9 +48,9 @@ std::string TakeOrigins(const ExecArguments& arguments, RunOptions* options) {
 }
 
 // Says warnings as they come, in the order in which they come. The program has the same stderr: so
-// one line at a time, and none where it might have to wait until somebody reads what is there. A
-// pipe that polls as writable has room for PIPE_BUF bytes, more than a line; a terminal's output
-// has not been stopped.
+// tcsim writes one line at a time, and none where the write might have to wait until somebody reads
+// what is there. A pipe that polls as writable has room for PIPE_BUF bytes, more than a line; a
+// terminal's output has not been stopped.
 class WarningsAsTheyCome {
  public:
   void Take(const std::string& warning) {
@@ -60,7 +60,7 @@ class WarningsAsTheyCome {
     Say("warning: " + warning);
     ++said_;
   }
-  // Those that had to wait.
+  // Says the warnings that had to wait.
   void SayTheRestOf(const std::vector<std::string>& warnings) const {
     for (std::size_t i = said_; i < warnings.size(); ++i) Say("warning: " + warnings[i]);
   }

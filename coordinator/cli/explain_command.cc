@@ -24,8 +24,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// "of 704 activations of hover/controller, which has missed 653 of its 656 deadlines": what there
-// is to choose from.
+// The activations that there are to choose from: "of 704 activations of hover/controller, which has
+// missed 653 of its 656 deadlines".
 std::string WhatThereIs(const explain::Told& told, const std::string& client) {
   std::int64_t all = 0, judged = 0, missed = 0;
   for (const explain::Activation& activation : told.activations) {

@@ -70,7 +70,7 @@ void AddFigures(const ClientFigures& figures, nlohmann::ordered_json& client) {
   client["response_ns"] = JsonOf(figures.times.response);
   client["start_delay_ns"] = JsonOf(figures.times.start_delay);
   client["execution_ns"] = JsonOf(figures.times.execution);
-  // Of the ends, as control engineers count it.
+  // The jitter is that of the ends, as control engineers count it.
   const Distribution& response = figures.times.response;
   client["jitter_ns"] = response.count() > 0 ? Json(response.max() - response.min()) : Json();
   client["counted_after_ns"] = figures.after_ns;

@@ -8,7 +8,8 @@
 
 namespace tcs {
 
-// Adds the keys to those of the client. What is not known, or nobody expects of it, is null.
+// Adds the keys to those of the client. A figure that is not known, or that nobody expects of the
+// client, is null.
 void AddFigures(const ClientFigures& figures, nlohmann::ordered_json& client);
 
 // A chain, by its name.

@@ -21,7 +21,7 @@ namespace tcs {
 
 namespace {
 
-// A job of the terminal's, as a shell makes one. Without a terminal it is nothing.
+// Makes the group the terminal's job, as a shell does. Without a terminal the call does nothing.
 void GiveTerminalTo(pid_t group) { tcsetpgrp(STDIN_FILENO, group); }
 
 [[noreturn]] void ExecGdb(pid_t debuggee) {
@@ -37,7 +37,7 @@ void GiveTerminalTo(pid_t group) { tcsetpgrp(STDIN_FILENO, group); }
   _exit(kNoSuchProgram);
 }
 
-// Until gdb has ended.
+// Runs gdb until gdb has ended.
 void RunGdb(pid_t debuggee) {
   const pid_t gdb = fork();
   if (gdb == 0) ExecGdb(debuggee);
@@ -72,7 +72,7 @@ int RunWithGdb(const std::function<int(const GdbSession& session)>& run) {
     from.Reset();
     exit(run({[&to](pid_t debuggee) {
                 const ssize_t written = write(to.get(), &debuggee, sizeof debuggee);
-                static_cast<void>(written);  // nobody is there any more: this process ends, too
+                static_cast<void>(written);  // without a reader this process ends, too
               },
               [has_ended] { return has_ended->load(); }}));
   }

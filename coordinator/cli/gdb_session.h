@@ -18,7 +18,7 @@ struct GdbSession {
   std::function<bool()> has_ended;
 };
 
-// Calls `run` in a process of its own, and runs gdb once that has begun the session. Returns the
+// Calls `run` in a process of its own, and runs gdb once `run` has begun the session. Returns the
 // run's exit status when both have ended. gdb's commands come from stdin. Call it before there are
 // threads.
 int RunWithGdb(const std::function<int(const GdbSession& session)>& run);

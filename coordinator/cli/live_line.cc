@@ -11,7 +11,7 @@ namespace tcs {
 
 namespace {
 
-// Of being behind a pace.
+// How far a run has to be behind its pace for the line to say so.
 constexpr std::int64_t kWorthSayingNs = 50'000'000;
 constexpr double kWeight = 0.2;                     // of the last stretch among all before it
 constexpr std::int64_t kTellingNs = 1'000'000'000;  // of real time, for a first guess
@@ -20,7 +20,8 @@ double AsSeconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
-// From how fast it has gone lately: a planner that starts or ends makes another run of it.
+// The estimate goes by how fast the run has gone lately: a planner that starts or ends makes
+// another run of it.
 std::string LiveLine::ToGo(const RunProgress& progress) {
   const std::int64_t passed_ns = progress.real_ns - last_real_ns_;
   if (passed_ns > 0) {
@@ -39,7 +40,7 @@ std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
   std::string text = fmt::format("{:.1f} of {:.1f} virtual s", AsSeconds(progress.virtual_ns),
                                  AsSeconds(duration_ns_));
   if (text.size() > columns) text.resize(columns);
-  // Whole, or not at all: whether there was room.
+  // Adds an item whole or not at all, and returns whether there was room.
   const auto add = [&](const std::string& item) {
     const bool fits = text.size() + 2 + item.size() <= columns;
     if (fits && !item.empty()) text += "  " + item;
@@ -58,7 +59,8 @@ std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
   } else {
     add(ToGo(progress));
   }
-  // The busiest of the whole run first, so that they seldom change places.
+  // The clients that were the busiest in the whole run come first, so that they seldom change
+  // places.
   std::vector<RunProgress::Load> loads = progress.clients;
   std::stable_sort(loads.begin(), loads.end(),
                    [](const auto& a, const auto& b) { return a.charged_ns > b.charged_ns; });

@@ -14,9 +14,9 @@ class LiveLine {
  public:
   explicit LiveLine(std::int64_t duration_ns) : duration_ns_(duration_ns) {}
 
-  // What to show for `progress`, the more important first: how far it is, how fast, and when it
-  // will be over; then what share of a processor each client had since the last call, the busiest
-  // first. What does not fit into `columns` is left out.
+  // The text to show for `progress`, the more important first: how far the run is, how fast, and
+  // when it will be over; then what share of a processor each client had since the last call, the
+  // busiest first. Items that do not fit into `columns` are left out.
   std::string Text(const RunProgress& progress, std::size_t columns);
 
   void Show(const RunProgress& progress);

@@ -34,8 +34,8 @@
 
 namespace {
 
-// What was mistyped in "tcsim COMMAND --option"; empty where it is something else. CLI11 would only
-// say that a command is required, or that something was not expected.
+// The sentence about a mistyped word in "tcsim COMMAND --option"; empty where the mistake is
+// another one. CLI11 would only say that a command is required, or that something was not expected.
 std::string WhatWasMistyped(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
   std::vector<std::string> commands;
@@ -63,11 +63,11 @@ std::string WhatWasMistyped(const CLI::App& app, int argc, char** argv) {
   return {};
 }
 
-// An option with a word after it or none: "--record mcap" is "--record=mcap". CLI11 would take
-// whatever comes after it, the scenario, too.
+// Joins an option with the word after it, if it has one: "--record mcap" becomes "--record=mcap".
+// CLI11 would take whatever comes after the option, the scenario, too.
 std::vector<std::string> WithRecordJoined(int argc, char** argv) {
   std::vector<std::string> words;
-  bool is_ours = true;  // what follows "--" is a program's
+  bool is_ours = true;  // words after "--" are a program's
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     is_ours = is_ours && word != "--";
@@ -81,7 +81,7 @@ std::vector<std::string> WithRecordJoined(int argc, char** argv) {
   return words;
 }
 
-// Of what is asked for and cannot be: a whole sentence.
+// An error about something that is asked for and cannot be: a whole sentence.
 class PlainError final : public CLI::ParseError {
  public:
   explicit PlainError(const std::string& sentence)
@@ -92,7 +92,7 @@ class PlainError final : public CLI::ParseError {
 int Parse(CLI::App& app, int argc, char** argv) {
   try {
     std::vector<std::string> words = WithRecordJoined(argc, argv);
-    std::ranges::reverse(words);  // CLI11 wants the last one first
+    std::ranges::reverse(words);  // CLI11 wants the last word first
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
@@ -409,11 +409,10 @@ int main(int argc, char** argv) {
   options.counts_work = for_fit;
   options.waits_for_cpu = !no_wait;
   if (seeded->count() > 0) arguments.seed = seed;
-  // A trial's run was started as /proc/self/exe, and would be called "exe".
   if (arguments.pauses && view.empty()) {
     return tcs::Fail("--pause needs --view, whose page lets the run go on: give both");
   }
-  // Before there is anything else of the run: the server is no part of it.
+  // The server starts before anything else of the run: it is no part of the run.
   std::unique_ptr<tcs::ViewLink> link;
   if (run->parsed() && !view.empty() && !arguments.check) {
     tcs::ViewRequest request{.server = tcs::ViewServer(),
@@ -425,6 +424,7 @@ int main(int argc, char** argv) {
     link = std::move(std::get<std::unique_ptr<tcs::ViewLink>>(started));
     options.view = link.get();
   }
+  // A trial's run was started as /proc/self/exe, and would be called "exe".
   if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");
   if (trials->parsed()) return tcs::DoWithTools(trials_arguments, argv);
   if (slurm_job->parsed()) return tcs::DoWithTools(slurm_arguments, argv);

@@ -22,7 +22,7 @@ std::string_view NameOf(MetricFigure figure) {
   return kMetricFigureNames[static_cast<std::size_t>(figure)];
 }
 
-// What the scenario asked for.
+// The figure that the scenario asked for.
 std::string Answer(const MetricFigures& f) {
   if (f.from != kMetricFromScenario) return "-";
   if (f.asked == MetricFigure::kFirstTimeWhen) return Second(f.first_time_ns);

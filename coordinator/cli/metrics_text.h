@@ -8,10 +8,10 @@
 
 namespace tcs {
 
-// Empty without metrics. Of very many the first, and how many there are more.
+// Empty without metrics. Of very many metrics the first ones, and how many more there are.
 [[nodiscard]] std::string MetricsTable(const MetricsOfRun& metrics);
 
-// What there is nothing to say of (no values, never) is null.
+// A figure that there is nothing to say of (no values, never) is null.
 [[nodiscard]] nlohmann::ordered_json MetricsJson(const MetricsOfRun& metrics);
 
 }  // namespace tcs

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a robot may be called (CheckName in yaml_reader.h), and a CMake project, too.
+// True if a robot may have the name (CheckName in yaml_reader.h), and a CMake project, too.
 bool IsName(const std::string& name) {
   constexpr const char* kAllowed =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";

@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 constexpr const char *kProgram = "tcsim", *kTools = "tcsim-tools";
 
-// tcsim's. In an installed tree tcsim-tools is not beside it.
+// The folder of tcsim. In an installed tree tcsim-tools is not in that folder.
 fs::path ProgramFolder() {
   std::error_code error;
   const fs::path own = fs::read_symlink("/proc/self/exe", error);

@@ -1,4 +1,4 @@
-// What tcsim prints on its stdout: results. Sentences about failures go to stderr (say.h).
+// tcsim's output on stdout: results. Sentences about failures go to stderr (say.h).
 #pragma once
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 
 namespace tcs {
 
-// Unlike fmt::print it throws nothing: that a disk is full is found by FlushStdout.
+// Unlike fmt::print, Print throws nothing: FlushStdout finds out that a disk is full.
 template <typename... Arguments>
 void Print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   const std::string text = fmt::format(format, std::forward<Arguments>(arguments)...);
@@ -17,8 +17,8 @@ void Print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   static_cast<void>(written);
 }
 
-// At the end of a command: all has been printed, or it has failed with a sentence. A stdout that
-// was closed from the beginning is no failure.
+// Called at the end of a command: all output has been printed, or the command has failed with a
+// sentence. A stdout that was closed from the beginning is no failure.
 int FlushStdout(int status);
 
 }  // namespace tcs

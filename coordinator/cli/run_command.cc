@@ -35,7 +35,7 @@ namespace {
 const std::vector<std::string> kNoWarnings;
 constexpr std::int64_t kNoteEveryNs = 1'000'000'000;  // real time
 
-// What there is to say of a run that goes on.
+// The report of a run that goes on, as far as it is known.
 RunReport UntilNow(const RunProgress& progress) {
   RunReport report;
   report.virtual_ns = progress.virtual_ns;
@@ -54,10 +54,11 @@ RunReport UntilNow(const RunProgress& progress) {
   return report;
 }
 
-// For `tcsim trials`, which made the file: the virtual time, as one number at its beginning.
+// Writes the virtual time for `tcsim trials`, which made the file: one number at the file's
+// beginning.
 void SayHowFar(int fd, const RunProgress& progress) {
   const ssize_t n = pwrite(fd, &progress.virtual_ns, sizeof progress.virtual_ns, 0);
-  static_cast<void>(n);  // nobody has to know
+  static_cast<void>(n);  // no failure has to be known
 }
 
 // Only a world goes by the wall clock: without one nothing says when virtual time passes while all
@@ -74,7 +75,7 @@ std::string TakePace(const RunArguments& arguments, const Scenario& scenario, Ru
   return {};
 }
 
-// Which client is debugged. The sentence, if there is no such.
+// Takes which client is debugged. The sentence, if there is no such client.
 std::string TakeDebugged(const std::string& name, const Scenario& scenario, const GdbSession& gdb,
                          RunOptions* options) {
   if (name.empty()) return {};
@@ -91,7 +92,7 @@ std::string TakeDebugged(const std::string& name, const Scenario& scenario, cons
   return {};
 }
 
-// Another one for each run on this computer, as far as chance goes.
+// A number that differs for each run on this computer, as far as chance goes.
 std::uint32_t NumberOfThisRun() {
   std::uint32_t number = 0;
   if (getrandom(&number, sizeof number, 0) != sizeof number) {
@@ -139,10 +140,10 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
                 "'; wait for it, or choose another one with --out");
   }
   options.output_directory = overrides.result_directory;
-  std::error_code ignored;  // that of an earlier run
+  std::error_code ignored;  // the snapshot of an earlier run
   std::filesystem::remove(overrides.result_directory + "/snapshot.yaml", ignored);
   if (options.view != nullptr) {
-    // Before anybody knows where to ask for something else.
+    // This comes before anybody knows where to ask for something else.
     options.view->Begin(arguments.pace, arguments.pauses);
     Say(fmt::format("watch the run at {}{}", options.view->url(),
                     arguments.pauses ? ", where it is paused until the page lets it go on" : ""));
@@ -175,7 +176,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
   if (!report.error.empty()) return Fail(report.error);
   PrintSummary(scenario, report, arguments.out);
   const std::string summary = SummaryText(scenario, options, report);
-  // Of half a run nobody knows.
+  // Half a run does not tell whether the expectations hold.
   std::vector<Judgement> judgements;
   if (!report.interrupted) judgements = JudgeRun(scenario.expectations, summary, report.kept);
   if (const std::string error = WriteWhole(arguments.out + "/summary.json",

@@ -19,7 +19,7 @@ struct RunArguments {
   std::vector<std::string> set;       // KEY=VALUE
   bool check = false;                 // load the scenario, and no more
   double pace = 0;                    // 0: as fast as it can
-  bool pauses = false;                // it starts standing
+  bool pauses = false;                // the run starts standing
   bool strict = false;                // each warning is an error
   std::string junit;                  // a file for the judgement; empty: none
   int progress_fd = -1;               // a file that gets the virtual time; -1: none

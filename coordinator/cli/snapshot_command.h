@@ -7,7 +7,7 @@ namespace tcs {
 
 struct SnapshotArguments {
   std::string from;  // DIR or DIR@TIME
-  std::string out;   // empty: it is printed
+  std::string out;   // empty: the snapshot is printed
 };
 
 // The exit status.

@@ -1,4 +1,4 @@
-// What `tcsim run` has to say of --stop-at and --from.
+// The sentences of `tcsim run` about --stop-at and --from.
 #pragma once
 
 #include <string>
@@ -12,11 +12,12 @@ namespace tcs {
 // "DIR@12.5s"; the folder may have an @, too.
 std::pair<std::string, std::string> FolderAndTime(const std::string& from);
 
-// Why a run of the scenario cannot stop there with a snapshot: one sentence. Empty: it can.
+// Why a run of the scenario cannot stop there with a snapshot: one sentence. Empty: the run can
+// stop there.
 std::string WhyNoStopAt(const Scenario& scenario, VirtualDuration duration,
                         VirtualDuration stop_at);
 
-// What there is to say to who asks for a run from within another one.
+// The sentence for a user who asks for a run that begins at a moment of another run.
 std::string NoWayBack(const std::string& from);
 
 }  // namespace tcs

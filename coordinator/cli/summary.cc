@@ -29,7 +29,8 @@ std::int64_t NotOnOurCpu(const RunReport& r) {
   return r.real_ns - (r.client_ns - r.ahead_ns) - r.awaited_ns - r.dynamics_ns - r.coordinating_ns;
 }
 
-// Of each core how long it was busy, in all and with each client; the rest of the run it was idle.
+// How long each core was busy, in all and with each client; the core was idle for the rest of the
+// run.
 nlohmann::ordered_json UseOfCores(const RobotSpec& robot, const RunReport& r) {
   auto cores = nlohmann::ordered_json::array();
   for (int core = 0; core < robot.cores; ++core) {
@@ -48,7 +49,7 @@ nlohmann::ordered_json UseOfCores(const RobotSpec& robot, const RunReport& r) {
   return cores;
 }
 
-// None where there is no world.
+// The engine's name; null where there is no world.
 nlohmann::json EngineOf(const Scenario& scenario) {
   if (!scenario.world.has_value()) return {};
   return TraitsOf(scenario.world->integrator.engine).name;
@@ -58,7 +59,7 @@ nlohmann::json EngineOf(const Scenario& scenario) {
 
 namespace {
 
-// Nothing of a run that had none, and that nobody let stand.
+// Prints nothing of a run that had no pace, and that nobody let stand.
 void PrintPace(const PaceReport& pace) {
   if (pace.stood_ns > 0) Print("it was paused for {:.3f} s of that\n", Seconds(pace.stood_ns));
   if (pace.pace <= 0) return;
@@ -71,7 +72,7 @@ void PrintPace(const PaceReport& pace) {
         pace.pace, Seconds(pace.behind_ns), Seconds(pace.late_ns));
 }
 
-// Nothing of clients that had no answers.
+// Prints nothing of clients that had no answers.
 void PrintOutside(const std::vector<ClientReport>& clients) {
   for (const ClientReport& c : clients) {
     const std::int64_t answers = c.outside.answers;

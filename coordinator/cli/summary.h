@@ -1,4 +1,4 @@
-// What a run ends with: a few lines for people, and summary.json for programs.
+// The summary at a run's end: a few lines for people, and summary.json for programs.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ double OverheadPercent(const RunReport& report);
 // True if a client ended before the run with anything but exit status 0.
 bool HasFailedClient(const RunReport& report);
 
-// To stdout; what went wrong in clients, to stderr.
+// Prints to stdout; what went wrong in clients goes to stderr.
 void PrintSummary(const Scenario& scenario, const RunReport& report, const std::string& directory);
 
 // As JSON; times are nanoseconds.

@@ -1,4 +1,4 @@
-// One line on the terminal, rewritten in place.
+// A line on the terminal, rewritten in place.
 #pragma once
 
 #include <cstddef>

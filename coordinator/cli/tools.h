@@ -1,7 +1,7 @@
-// The commands that look at what runs have written, or start runs of their own: none of them flies.
-// They are most of what there is to compile, so they are a program of their own, tcsim-tools, with
-// the same main: a first flight does not wait for them. It is another program for who builds only;
-// users call tcsim.
+// The commands that look at what runs have written, or start runs of their own: no such command
+// flies. These commands are most of what there is to compile, so they are a program of their own,
+// tcsim-tools, with the same main: a first flight does not wait for them. tcsim-tools is another
+// program for those who build only; users call tcsim.
 #pragma once
 
 #include <string>
@@ -40,12 +40,12 @@ using ToolArguments =
                  GenerateArguments, ReportArguments, SlurmJobArguments, SnapshotArguments,
                  TopicsArguments, TraceArguments, TrialsArguments>;
 
-// Does the command, whose words are `argv`, and returns the exit status. In tcsim it becomes
-// tcsim-tools, and returns only if that cannot be started (tools_elsewhere.cc); there it is done
-// (tools_here.cc).
+// Does the command, whose words are `argv`, and returns the exit status. In tcsim the process
+// becomes tcsim-tools, and the call returns only if that program cannot be started
+// (tools_elsewhere.cc); tcsim-tools does the command (tools_here.cc).
 int DoWithTools(const ToolArguments& arguments, char** argv);
 
-// Writes snapshot.yaml into the folder of a run that has stopped. The exit status; what failed has
+// Writes snapshot.yaml into the folder of a run that has stopped. The exit status; a failure has
 // been said.
 int WriteSnapshot(const std::string& folder);
 

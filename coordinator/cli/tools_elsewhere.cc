@@ -32,7 +32,7 @@ int WriteSnapshot(const std::string& folder) {
   const char* const argv[] = {"tcsim", "snapshot", folder.c_str(), "--out", out.c_str(), nullptr};
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  // What it has written the run says itself.
+  // The run itself says what the snapshot command has written.
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t pid = 0;
   const int error = posix_spawn(&pid, program.c_str(), &actions, nullptr,

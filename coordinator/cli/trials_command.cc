@@ -46,7 +46,7 @@ constexpr unsigned kStopWithinS = 15;
 // Larger files that a command names are data; to hash them would take a while.
 constexpr std::uintmax_t kLargestProgram = 64 << 20;
 
-// The scenario as each group of trials runs it. The sentence, if one cannot be run.
+// The scenario as each group of trials runs it. The sentence, if a group cannot be run.
 std::string LoadGroups(const TrialsArguments& arguments, const TrialsPlan& plan,
                        std::vector<Scenario>* scenarios) {
   ScenarioOverrides overrides;
@@ -65,7 +65,8 @@ std::string LoadGroups(const TrialsArguments& arguments, const TrialsPlan& plan,
   return {};
 }
 
-// So that each trial is told, and the folder's record says, what the files say now.
+// Adds the values of the overlays' files to the options, so that each trial is told, and the
+// folder's record says, what the files say now.
 std::string AddOverlays(const TrialsArguments& arguments, TrialOptions* options) {
   std::vector<std::string> set;
   for (const std::string& path : arguments.overlays) {
@@ -122,7 +123,7 @@ std::map<std::string, std::string> HashPrograms(const Scenario& scenario) {
   return hashes;
 }
 
-// Where an address is not this machine's loopback, a network of its own does not have it.
+// An address that is not this machine's loopback does not exist in a network of a trial's own.
 bool NeedsHostNetwork(const Scenario& scenario) {
   const auto is_elsewhere = [](const auto& end) {
     const auto* endpoint = std::get_if<UdpEndpoint>(&end);
@@ -180,7 +181,7 @@ std::unique_ptr<Launcher> MakeLauncher(const TrialsArguments& arguments, const S
   return std::make_unique<LocalLauncher>(options);
 }
 
-// What cannot be meant.
+// Why the launcher cannot be used with these arguments; empty if it can.
 std::string CheckLauncher(const TrialsArguments& arguments) {
   if (arguments.launcher != "slurm") {
     return arguments.slurm_options.empty()
@@ -196,8 +197,8 @@ std::string CheckLauncher(const TrialsArguments& arguments) {
   return WhyNoSlurm();
 }
 
-// For trials that are not to wait: who has the processors; empty if one is free, or none is needed
-// for a run alone.
+// For trials that are not to wait: the sentence about who has the processors; empty if one is free,
+// or none is needed for a run alone.
 std::string WhoHasProcessors() {
   if (AskForRealTime().error != 0 || WhyNoDuplicates() != 0) return {};
   const auto claim = ClaimCpu(false);  // and given back at once
@@ -219,7 +220,7 @@ std::string Failure(const TrialsPlan& plan, const TrialEnd& end, const std::stri
                      fs::exists(log, error) ? " (" + log + ")" : "");
 }
 
-// What a trial came to, as it ends: for a log.
+// Prints what a trial came to, as the trial ends: for a log.
 void PrintEnd(const TrialsPlan& plan, const TrialEnd& end, const TrialsProgress& progress,
               const std::string& folder) {
   const std::string how =
@@ -233,7 +234,7 @@ void PrintEnd(const TrialsPlan& plan, const TrialEnd& end, const TrialsProgress&
   std::fflush(stdout);
 }
 
-// Runs what is not done yet, and says what all of it came to.
+// Runs the trials that are not done yet, and says what all trials came to.
 int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
             const std::vector<Scenario>& scenarios) {
   std::vector<TrialsGroup> groups;

@@ -25,7 +25,7 @@ struct TrialsArguments {
   TrialOptions options;
 };
 
-// The exit status. Guards itself: whatever dies, no run of it is left.
+// The exit status. The command guards itself: whatever dies, no run of the command is left.
 int TrialsCommand(const TrialsArguments& arguments);
 
 }  // namespace tcs

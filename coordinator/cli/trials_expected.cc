@@ -23,7 +23,7 @@ std::vector<std::string> WarningsIn(const std::string& summary) {
   }
 }
 
-// Beside a plan's only group its label says nothing.
+// The label of a plan's only group says nothing, and is left out.
 std::string InGroup(const TrialsPlan& plan, const std::string& group) {
   return plan.vary.empty() ? "" : " (" + group + ")";
 }

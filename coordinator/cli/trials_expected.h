@@ -1,4 +1,5 @@
-// What `tcsim trials` says of the scenario's expectations, and of warnings under --strict.
+// The output of `tcsim trials` about the scenario's expectations, and about warnings under
+// --strict.
 #pragma once
 
 #include <string>
@@ -17,15 +18,16 @@ struct JudgedTrials {
   [[nodiscard]] bool IsAsExpected() const;
 };
 
-// Of the trials in the folder that are done; `scenarios` are those of the groups.
+// Judges the trials in the folder that are done; `scenarios` are those of the groups.
 [[nodiscard]] JudgedTrials JudgeTrials(const TrialsPlan& plan,
                                        const std::vector<Scenario>& scenarios,
                                        const std::string& folder, bool strict);
 
-// How many hold, to stdout; those that do not, and warnings that are refused, to stderr.
+// Prints to stdout how many expectations hold. Expectations that do not hold, and warnings that are
+// refused, go to stderr.
 void PrintJudged(const JudgedTrials& judged);
 
-// Empty on success, else the sentence. `failures`: of the trials that are not done.
+// Empty on success, else the sentence. `failures`: the sentences of the trials that are not done.
 [[nodiscard]] std::string WriteJunit(const std::string& path, const TrialsPlan& plan,
                                      const JudgedTrials& judged,
                                      const std::vector<std::string>& failures);

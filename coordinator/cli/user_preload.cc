@@ -30,14 +30,14 @@ std::string TakeUserPreload(char** argv) {
     return users;
   }
   users = Get(kPreload);
-  // Inside a run it is tcs's own, and main refuses to go on.
+  // Inside a run LD_PRELOAD is tcs's own, and main refuses to go on.
   if (users.empty() || getenv(shm::kSocketVariable) != nullptr) return users;
   std::error_code gone;
   const std::string self = std::filesystem::read_symlink("/proc/self/exe", gone);
   setenv(kSetAside, users.c_str(), 1);
   unsetenv(kPreload);
   if (!gone) execv(self.c_str(), argv);
-  // It cannot be executed again: so it goes on as it is.
+  // tcsim cannot be executed again: so tcsim goes on as it is.
   unsetenv(kSetAside);
   setenv(kPreload, users.c_str(), 1);
   return users;

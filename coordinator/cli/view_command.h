@@ -5,7 +5,7 @@
 
 namespace tcs {
 
-// Shows a folder at `where` (view/launch.h), until it is ended. The exit status.
+// Shows a folder at `where` (view/launch.h), until the server is ended. The exit status.
 int ViewCommand(const std::string& folder, const std::string& where);
 
 }  // namespace tcs

@@ -32,8 +32,8 @@ double MeanOf(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// The mean of as many values, drawn with replacement. The standard's distributions differ between
-// libraries; the numbers of the engine do not.
+// The mean of as many values as `values` has, drawn from these with replacement. The standard's
+// distributions differ between libraries; the numbers of the engine do not.
 double DrawnMean(const std::vector<double>& values, std::mt19937_64& engine) {
   double sum = 0;
   for (std::size_t i = 0; i < values.size(); ++i) sum += values[engine() % values.size()];
@@ -51,7 +51,7 @@ Difference ShiftBetween(const std::vector<double>& a, const std::vector<double>&
   }
   std::sort(differences.begin(), differences.end());
   const auto n = static_cast<double>(first.size()), m = static_cast<double>(second.size());
-  // So many differences at each end are outside.
+  // The number of differences that are outside the interval at each end.
   const double outside = std::floor(n * m / 2 - kNormal * std::sqrt(n * m * (n + m + 1) / 12));
   const auto place = static_cast<std::size_t>(std::max(0.0, outside));
   return {report::Quantile(differences, 0.5), differences[place],

@@ -91,7 +91,7 @@ class Judgement {
         comparison_.gone.push_back(label.empty() ? name : name + " at " + label);
         continue;
       }
-      // Those that never got so far would look well.
+      // Trials that never got so far have no value: without a warning b would look well.
       if (ShareOf(b, other->second) < ShareOf(a, sample)) rarer_.insert(name);
       Compare(label, name, a, b, sample, other->second);
     }
@@ -100,7 +100,7 @@ class Judgement {
     }
   }
 
-  // The trials that have it.
+  // The share of trials that have the figure.
   static double ShareOf(const Cell& cell, const Sample& sample) {
     return static_cast<double>(sample.values.size()) /
            static_cast<double>(std::max<std::size_t>(1, cell.trials));
@@ -150,7 +150,7 @@ class Judgement {
                             Finding* finding) {
     const double size = finding->after - finding->before;
     finding->difference = {size, size, size};
-    // That a program failed is a fact, whatever made it fail.
+    // A program's failure is a fact, whatever made the program fail.
     if (name == "run.failed") finding->evidence = Evidence::kFixed;
     const auto first = a.parts.find(name), second = b.parts.find(name);
     if (first == a.parts.end() || second == b.parts.end()) return;
@@ -199,7 +199,7 @@ class Judgement {
 
   void Warn(std::string sentence) { comparison_.warnings.push_back(std::move(sentence)); }
 
-  // Of runs with set costs whatever differs is real, if their seeds do not.
+  // In runs with set costs every difference is real, if their seeds are the same.
   void WarnOfSeeds() {
     const auto seed_of = [](const Side& side) {
       return side.cells.begin()->second.samples.begin()->second.seeds.front();
@@ -213,7 +213,7 @@ class Judgement {
         a_.folder, a, b_.folder, b));
   }
 
-  // What may be worse, and is not called so.
+  // Warns of figures that may be worse, and are not called so.
   void WarnOfEvidence() {
     const bool are_runs = a_.is_run && b_.is_run;
     if (are_runs && are_fixed_) WarnOfSeeds();

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostExact = 60;
 
-// Twice the ranks of all values, those of `a` first: with ties they are halves.
+// Twice the ranks of all values, those of `a` first: with ties ranks are halves.
 std::vector<int> DoubledRanks(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> all(a);
   all.insert(all.end(), b.begin(), b.end());
@@ -65,7 +65,7 @@ double NormalShare(const std::vector<int>& ranks, std::size_t chosen, int sum) {
   double mean = 0, squares = 0;
   for (const int rank : ranks) mean += rank / all;
   for (const int rank : ranks) squares += (rank - mean) * (rank - mean);
-  // Of a sum of n drawn without replacement.
+  // The variance of a sum of n ranks drawn without replacement.
   const double variance = n * m / (all * (all - 1)) * squares;
   if (variance <= 0) return 1;
   // The sums are whole numbers: half a step less far.
@@ -88,7 +88,7 @@ double RankSumProbability(const std::vector<double>& a, const std::vector<double
 double LeastRankSumProbability(std::size_t a, std::size_t b) {
   if (a == 0 || b == 0) return 1;
   const auto log_factorial = [](std::size_t n) { return std::lgamma(static_cast<double>(n) + 1); };
-  // Two of all the ways to choose: all below, and all above.
+  // Two of all the ways to choose: one sample all below the other, and all above it.
   const double log_ways = log_factorial(a + b) - log_factorial(a) - log_factorial(b);
   return std::min(1.0, 2 * std::exp(-log_ways));
 }

@@ -1,5 +1,6 @@
 // The rank-sum test of Mann and Whitney: how often chance alone would order two samples as unlike
-// as they are. It asks nothing of the distributions, and is not misled by a few extreme values.
+// as they are. The test asks nothing of the distributions, and is not misled by a few extreme
+// values.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,8 @@ namespace tcs::compare {
 // approximation. 1 where a sample is empty.
 [[nodiscard]] double RankSumProbability(const std::vector<double>& a, const std::vector<double>& b);
 
-// The least that the test can find with so many values: of samples of which one lies all above the
-// other.
+// The least probability that the test can find with so many values: that of samples of which one
+// lies all above the other.
 [[nodiscard]] double LeastRankSumProbability(std::size_t a, std::size_t b);
 
 }  // namespace tcs::compare

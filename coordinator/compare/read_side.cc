@@ -65,7 +65,7 @@ Ending TakeSummary(const std::string& text, Side* side, Cell* cell) {
     TakeFacts(summary, side);
     AddValue(kFailedFigure, {has_failed ? 1.0 : 0.0, MeasureUnit::kShare, WorseWhen::kMore, true},
              seed, cell);
-    if (has_failed && !side->is_run) return ending;  // its other figures are of a part of it
+    if (has_failed && !side->is_run) return ending;  // the other figures are of a part of the run
     for (const auto& [name, measure] : MeasuresFromSummary(text).value_or(Measures())) {
       AddValue(name, measure, seed, cell);
     }
@@ -75,7 +75,7 @@ Ending TakeSummary(const std::string& text, Side* side, Cell* cell) {
   }
 }
 
-// How the run varied in itself.
+// Takes how the run varied within itself into the cell.
 void TakeParts(const std::string& folder, Cell* cell) {
   if (!IsFile(folder + "/activations.csv")) return;
   std::vector<std::string> ignored;

@@ -8,12 +8,13 @@
 
 namespace tcs::compare {
 
-// Of a run also how its response and execution times and its misses varied in itself, from
-// activations.csv. One sentence if the folder is neither, or holds nothing that went to its end.
+// Reads a side; of a run also how its response and execution times and its misses varied within the
+// run, from activations.csv. The error is one sentence: the folder is neither that of a run nor of
+// trials, or holds nothing that went to its end.
 [[nodiscard]] LoadResult<Side> ReadSide(const std::string& folder);
 
-// Cuts the values into `parts` rows of neighbours, and returns the median of each; none if there
-// are too few for five in each.
+// Cuts the values into `parts` rows of neighbours, and returns the median of each row; none if
+// there are too few values for five in each row.
 [[nodiscard]] std::vector<double> PartMedians(const std::vector<double>& values, std::size_t parts);
 
 }  // namespace tcs::compare

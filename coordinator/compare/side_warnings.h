@@ -8,8 +8,8 @@
 
 namespace tcs::compare {
 
-// Those of the sides themselves among them. `only_b` are figures that only b has, `rarer` those
-// that a smaller share of its trials has.
+// The warnings, those of the sides themselves among them. `only_b` are figures that only b has,
+// `rarer` figures that a smaller share of b's trials has.
 [[nodiscard]] std::vector<std::string> WarningsOf(const Side& a, const Side& b,
                                                   const std::vector<std::string>& only_b,
                                                   const std::vector<std::string>& rarer);

@@ -96,7 +96,7 @@ std::string_view WordOf(MeasureUnit unit) {
   return "";
 }
 
-// Why it is no chance.
+// Why the difference is not chance.
 std::string WhyReal(const Finding& finding) {
   switch (finding.evidence) {
     case Evidence::kFixed:

@@ -7,8 +7,8 @@
 
 namespace tcs::compare {
 
-// A sentence for each figure that became worse (of many the greatest), a table of all that differ,
-// and how many were compared. Warnings are not among it.
+// A sentence for each figure that became worse (of many the greatest), a table of all figures that
+// differ, and how many were compared. Warnings are not part of the text.
 [[nodiscard]] std::string CompareText(const Side& a, const Side& b, const Comparison& comparison,
                                       const JudgeOptions& options);
 

@@ -25,7 +25,7 @@ std::vector<std::string_view> PartsOf(std::string_view path) {
   return parts;
 }
 
-// What follows the folder's name; none: the path is not in there.
+// The part of the path behind the folder's name; none: the path is not in the folder.
 std::optional<std::string> Within(std::string_view path, std::string_view folder) {
   if (path == folder) return std::string();
   if (!path.starts_with(folder) || path[folder.size()] != '/') return std::nullopt;

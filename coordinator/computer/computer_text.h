@@ -1,5 +1,5 @@
-// What stands in the files in which programs read of their computer (computer_file.h), where it is
-// made anew: as the kernel writes it, with the values of a robot. Pure: no system calls.
+// The texts of the files in which programs read of their computer (computer_file.h), where tcs
+// makes them anew: as the kernel writes them, with the values of a robot. Pure: no system calls.
 #pragma once
 
 #include <sys/types.h>
@@ -37,18 +37,18 @@ struct Counters {
 };
 std::string CountersText(const Counters& counters);
 
-// What a robot says of a process or a thread.
+// The values that a robot has for a process or a thread.
 struct ProcessFacts {
   std::int64_t user_ns = 0, system_ns = 0, children_ns = 0, started_ns = 0;
-  char state = 'S';  // R or S; what else the kernel shows is kept
+  char state = 'S';  // R or S; any other state that the kernel shows is kept
   std::uint32_t core = 0;
   int policy = 0, real_time_priority = 0;
 };
 // /proc/PID/stat with these in place of the host's.
 std::string ProcessCounters(std::string_view of_host, const ProcessFacts& facts);
-// /proc/PID/stat of a process that is not in the run: its start, by the robot's clock.
+// /proc/PID/stat of a process that is not in the run, with its start by the robot's clock.
 std::string OutsideProcessCounters(std::string_view of_host, std::int64_t later_ticks);
-// Of the kernel's: user and system time, in ticks.
+// User and system time as the kernel counts them, in ticks.
 struct ProcessTicks {
   std::int64_t user = 0, system = 0;
 };

@@ -30,7 +30,7 @@ std::optional<std::string> TextOf(const fs::path& path) {
 
 void Put(const fs::path& path, const std::string& text) { std::ofstream(path) << text << "\n"; }
 
-// What can be read of one of the host's files, if it is there.
+// Copies what can be read of one of the host's files, if the file is there.
 void Copy(const fs::path& from, const fs::path& to) {
   if (const auto text = TextOf(from)) std::ofstream(to) << *text;
 }
@@ -44,7 +44,7 @@ void CopyFiles(const fs::path& from, const fs::path& to) {
   }
 }
 
-// In memory if that is allowed: programs wait for it. Empty: nowhere.
+// The folder is in memory if that is allowed: programs wait for it. Empty: nowhere.
 std::string NewFolder() {
   std::error_code missing;
   for (const fs::path& in : {fs::path("/dev/shm"), fs::temp_directory_path(missing)}) {
@@ -54,7 +54,7 @@ std::string NewFolder() {
   return {};
 }
 
-// Of the host's core that this one is like.
+// The number of the host's core that this core is like.
 std::size_t LikeHosts(std::size_t core) {
   std::error_code missing;
   std::size_t count = 1;

@@ -1,8 +1,8 @@
 // /sys/devices/system/cpu and /sys/devices/system/node of a computer with so many cores: one
 // processor whose cores are like those of the host, each with its own caches but for the last
-// level, and one node with all memory. They are folders on disk or in /dev/shm, since only those
-// can be listed; made when they are first looked at, and gone with this object, however the process
-// ends.
+// level, and one node with all memory. The folders are on disk or in /dev/shm, since only such
+// folders can be listed. They are made when they are first looked at, and are gone with this
+// object, however the process ends.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -23,7 +23,7 @@ class ProcessorFolders {
   ProcessorFolders(const ProcessorFolders&) = delete;
   ProcessorFolders& operator=(const ProcessorFolders&) = delete;
 
-  // What has that name in there, for reading, by open's flags. Empty: the folder itself. None:
+  // Opens the entry of that name for reading, with open's flags. Empty: the folder itself. None:
   // errno is set, to ENOSYS where the folders cannot be made.
   UniqueFd Open(Which which, const std::string& name, int flags);
 

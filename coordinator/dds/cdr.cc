@@ -24,7 +24,7 @@ struct Encoding {
   bool is_big_endian = false;
 };
 
-// The plain encodings, which are those of final types; none for any other.
+// The plain encodings, which are those of final types. None: another encoding.
 std::optional<Encoding> EncodingOf(std::span<const std::byte> cdr) {
   switch (std::to_integer<unsigned>(cdr[0]) << 8 | std::to_integer<unsigned>(cdr[1])) {
     case 0x0000:
@@ -55,7 +55,8 @@ std::string Hex(std::span<const std::byte> bytes) {
 std::vector<std::byte> Serialise(const dds_topic_descriptor_t& type, const void* message) {
   dds_ostreamLE_t stream;
   dds_ostreamLE_init(&stream, type.m_size, kXcdr1);
-  // Fails only for what no message of ours has: an enumerator or a bounded string out of bounds.
+  // Fails only for values that no message of ours has: an enumerator or a bounded string out of
+  // bounds.
   TCS_CHECK(dds_stream_writeLE(&stream, static_cast<const char*>(message), type.m_ops) != nullptr);
   const std::size_t size = stream.x.m_index;
   const std::size_t padding = Padding(size);
@@ -80,8 +81,9 @@ std::variant<std::monostate, CdrError> Deserialise(const dds_topic_descriptor_t&
     return CdrError{"is encoded as 0x" + Hex(cdr.first(2)) +
                     ", but a final type is plain CDR (0x0000, 0x0001, 0x0006 or 0x0007)"};
   }
-  // Checked and brought to our byte order in place, so in a copy. What follows the check trusts
-  // every length in it. One byte more, because an empty vector's data is no pointer.
+  // The data are checked and brought to our byte order in place, so in a copy. The code after the
+  // check trusts every length in the data. The copy has a byte more, because an empty vector's data
+  // is no pointer.
   const auto size = static_cast<std::uint32_t>(cdr.size() - kEncapsulation);
   std::vector<char> data(size + 1);
   std::copy_n(reinterpret_cast<const char*>(cdr.data()) + kEncapsulation, size, data.begin());

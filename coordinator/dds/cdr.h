@@ -21,7 +21,7 @@
 namespace tcs::dds {
 
 struct CdrError {
-  std::string message;  // what is wrong with the bytes, as the rest of a sentence about them
+  std::string message;  // the fault in the bytes, as the rest of a sentence about them
 };
 
 // The table of a generated message; specialised beside the types (ros_types.h).
@@ -31,7 +31,7 @@ const dds_topic_descriptor_t& DescriptorOf();
 namespace internal {
 
 std::vector<std::byte> Serialise(const dds_topic_descriptor_t& type, const void* message);
-// Into `message`, which is all zero before; what it then points to is the caller's to free.
+// Into `message`, which is all zero before; the caller frees the memory that it then points to.
 std::variant<std::monostate, CdrError> Deserialise(const dds_topic_descriptor_t& type,
                                                    std::span<const std::byte> cdr, void* message);
 void FreeContents(const dds_topic_descriptor_t& type, void* message);
@@ -66,7 +66,8 @@ template <class Message>
   return internal::Serialise(DescriptorOf<Message>(), &*message);
 }
 
-// Whatever bytes come: XCDR1 or XCDR2 in either byte order, of exactly this type, or an error.
+// The bytes may be any: the result is an error unless they are XCDR1 or XCDR2 in either byte order,
+// of exactly this type.
 template <class Message>
 [[nodiscard]] std::variant<Owned<Message>, CdrError> FromCdr(std::span<const std::byte> cdr) {
   Owned<Message> message;

@@ -1,6 +1,6 @@
-// What programs command, as ROS 2 messages: of commands that came in another form, for recordings.
+// Programs' commands that came in another form, as ROS 2 messages, for recordings.
 //
-// Units as in ros_messages.h. What a command leaves open is NaN.
+// Units as in ros_messages.h. A value that a command leaves open is NaN.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ namespace tcs::dds {
 
 [[nodiscard]] Owned<WrenchMessage> ToMessage(const Wrench& wrench);
 [[nodiscard]] Owned<TwistMessage> ToMessage(const PlanarSpeed& speed);
-// `joints` are those that goals count. A quantity that no goal has is an empty list.
+// The goals count joints by their places in `joints`. A quantity that no goal has is an empty list.
 [[nodiscard]] Owned<JointStateMessage> ToMessage(std::int64_t stamp_ns,
                                                  std::span<const std::string> joints,
                                                  std::span<const JointGoal> goals);
-// Its header's stamp is the start; 0: when it comes. `realtime_offset` is what stamps are ahead of
-// virtual time.
+// The stamp in the message's header is the trajectory's start; 0: the message's arrival. Stamps are
+// `realtime_offset` ahead of virtual time.
 [[nodiscard]] Owned<JointTrajectoryMessage> ToMessage(VirtualDuration realtime_offset,
                                                       std::span<const std::string> joints,
                                                       const JointTrajectory& trajectory);

@@ -15,7 +15,7 @@ using shm::DdsBytes;
 using shm::DdsQos;
 
 constexpr std::int64_t kForEverNs = INT64_MAX;
-// Cyclone's own for reliable writers.
+// Cyclone's own value for reliable writers.
 constexpr std::int64_t kMaxBlockingNs = 100'000'000;
 
 // Texts behind a structure of `size` bytes.
@@ -144,7 +144,7 @@ std::vector<std::byte> EncodeEndpoint(const Endpoint& endpoint) {
 
 namespace {
 
-// The structure if all that it refers to is there.
+// The structure, if all texts that it refers to are there.
 std::optional<shm::DdsEndpoint> SharedOf(std::span<const std::byte> payload) {
   shm::DdsEndpoint shared;
   if (payload.size() < sizeof shared) return std::nullopt;

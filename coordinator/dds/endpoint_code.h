@@ -13,23 +13,24 @@
 
 namespace tcs::dds {
 
-// What tells endpoints of one participant apart, and whom they reach; names are DDS's.
+// The properties that tell endpoints of one participant apart, and decide whom they reach; names
+// are DDS's.
 struct Endpoint {
   EndpointKind kind = EndpointKind::kWriter;
   std::string topic, type;
   bool keyless = true;
   Qos qos;
-  std::string user_data = {};  // what ROS 2 says of the type there (type_hash.h)
+  std::string user_data = {};  // ROS 2's information on the type (type_hash.h)
 };
 
 [[nodiscard]] std::vector<std::byte> EncodeParticipant(std::string_view name,
                                                        std::string_view user_data);
 [[nodiscard]] std::vector<std::byte> EncodeEndpoint(const Endpoint& endpoint);
 
-// None for bytes that are no endpoint: they come from clients. Of what is none of our business,
-// too, every text lies inside the payload.
+// None: the bytes are no endpoint; they come from clients. Texts that are none of our business lie
+// inside the payload, too.
 [[nodiscard]] std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload);
-// The same of a participant.
+// The same, for a participant.
 [[nodiscard]] bool IsParticipant(std::span<const std::byte> payload);
 bool IsTopic(std::span<const std::byte> payload);
 

@@ -24,26 +24,29 @@ namespace {
 using shm::DdsKind;
 using shm::DdsMessage;
 
-// What may wait for one process. Whoever lets more wait has stopped taking it.
+// The bytes that may wait for one process. A process that lets more wait has stopped taking them.
 constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
-// What of that may besides be news of participants, endpoints and liveliness, of which a program
-// should not miss any for as long as it may still go on.
+// The bytes beyond that for news of participants, endpoints and liveliness: a program should not
+// miss any news for as long as it may still go on.
 constexpr std::size_t kMostQueuedNewsBytes = std::size_t{64} << 20;
-// What one process may have told of its participants and endpoints: some ten thousands of them.
+// The bytes that one process may have told of its participants and endpoints: some ten thousands of
+// them.
 constexpr std::size_t kMostKnownBytes = std::size_t{16} << 20;
-// Full beyond that: some milliseconds' work for who takes it. Cyclone's writers stop at half of it.
+// A process is full beyond that: some milliseconds' work for its deliverer. Cyclone's writers stop
+// at half of it.
 constexpr std::size_t kFullBytes = std::size_t{1} << 20;
 
-// Who has been missed is found again that much later. Over a network that takes as long as the next
-// announcement; Cyclone needs some of it to collect what it knew under the same GUID.
+// A participant that has been missed is found again that much later. Over a network that takes as
+// long as the next announcement; Cyclone needs some of that time to collect what it knew under the
+// same GUID.
 constexpr std::int64_t kRediscoveryNs = 100'000'000;
 
 std::int64_t After(std::int64_t now_ns, std::int64_t ns) {
   return ns < 0 ? shm::kNeverNs : shm::AddSaturated(now_ns, ns);
 }
 
-// A writer that keeps the last ones has room for it at the cost of an earlier one. What ends an
-// instance is not replaced, and does not replace.
+// A writer that keeps the last samples has room for a new one at the cost of an earlier one. A
+// sample that ends an instance is not replaced, and replaces none.
 bool IsReplaceable(const DdsMessage& header) {
   return header.kind == DdsKind::kSample && header.keep_last > 0 && header.status_info == 0 &&
          !IsAddressed(header);
@@ -119,8 +122,8 @@ Hub::Number Hub::Join(std::int64_t now_ns) {
   return number;
 }
 
-// Its number is not given again: others may still hear from it. But its memory goes back, should
-// it still have that, too.
+// The process's number is not given again: others may still hear from the process. But its memory
+// goes back, even if the process still has that, too.
 void Hub::Leave(Number number, std::int64_t now_ns) {
   Member* member = Find(number);
   if (member == nullptr) return;
@@ -129,20 +132,20 @@ void Hub::Leave(Number number, std::int64_t now_ns) {
             static_cast<off_t>(shm::kDdsAreaSize));
   const bool was_full = member->full, was_stopped = member->stopped;
   *member = Member{};
-  // Who waits for it goes on when others miss it.
+  // A writer that waits for room here goes on when others miss the process.
   member->full = was_full;
   std::vector<Known> left;
   std::erase_if(known_, [&](const Known& known) {
     if (known.from == number) left.push_back(known);
     return known.from == number;
   });
-  // If it was stopped, its leases run out as they do already.
+  // If the process was stopped, its leases run out as they do already.
   if (!was_stopped) EndLeases(number, left, now_ns);
   std::erase_if(owners_, [number](const auto& owner) { return owner.second == number; });
   if (observer_ != nullptr) observer_->Left(number);
 }
 
-// Nobody says so: others notice.
+// No process says that a lease is over: others notice.
 std::vector<Hub::Message> Hub::EndLeases(Number number, const std::vector<Known>& of,
                                          std::int64_t now_ns) {
   std::vector<Message> ends;
@@ -200,7 +203,7 @@ void Hub::Continue(Number number, std::int64_t now_ns) {
   }
 }
 
-// As if it had gone and come back.
+// As if process `whom` had gone and come back.
 void Hub::Introduce(Number to, Number whom, std::int64_t now_ns) {
   for (const bool comes : {false, true}) {
     for (const Known& known : known_) {
@@ -233,13 +236,13 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns, std::
   return wrong;
 }
 
-// Of messages in memory that the program may write to all the while.
+// The messages are in memory that the program may write to all the while.
 std::string Hub::EnterAll(Number from, std::span<const std::byte> left, std::int64_t now_ns,
                           std::int64_t ran_ns) {
   while (!left.empty()) {
     DdsMessage header{};
     if (left.size() >= sizeof header) header = HeaderOf(left);
-    // What has been checked is not to be read again.
+    // The header that has been checked is not to be read again.
     std::atomic_signal_fence(std::memory_order_seq_cst);
     if (auto wrong = WhatIsWrongWithSize(header, left.size())) return *wrong;
     header.from = from;
@@ -254,7 +257,7 @@ std::string Hub::EnterAll(Number from, std::span<const std::byte> left, std::int
   return {};
 }
 
-// Of one whose size is right.
+// The size of the message is right.
 std::optional<std::string> Hub::WhyNot(const DdsMessage& header,
                                        std::span<const std::byte> payload) const {
   if (auto wrong = WhatIsWrong(header, payload)) return wrong;
@@ -292,7 +295,7 @@ bool Hub::IsAnothers(const Guid& guid, Number number) const {
   return owner != owners_.end() && owner->second != number;
 }
 
-// Of a box of which so many bytes have been used.
+// Gives back the memory of a box of which so many bytes have been used.
 void Hub::GiveBack(const Member& member, std::size_t box, std::size_t bytes) {
   if (bytes <= shm::kDdsUsualSize) return;
   fallocate(member.fd.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
@@ -418,7 +421,8 @@ void Hub::Drop(const DdsMessage& header, Number to, std::uint64_t& count) {
   if (observer_ != nullptr && header.kind == DdsKind::kSample) observer_->Dropped(header, to);
 }
 
-// A full process has one message more; if it is of a writer that keeps the last, those are kept.
+// A full process has one message more; if that is of a writer that keeps the last ones, only the
+// last ones stay.
 void Hub::Replace(Number to, Queued::iterator latest) {
   const DdsMessage header = HeaderOf(*latest->second);
   if (!IsReplaceable(header)) return;
@@ -444,7 +448,7 @@ void Hub::Replace(Number to, Queued::iterator latest) {
   ShowFull(to);
 }
 
-// In all areas, when it has changed.
+// In all areas, when the process's state has changed.
 void Hub::ShowFull(Number number) {
   Member& member = members_[number - 1];
   const bool full = IsFull(number);
@@ -470,7 +474,7 @@ std::size_t Hub::Deliver(Number number, std::int64_t now_ns) {
   Member* member = Find(number);
   if (member == nullptr) return 0;
   std::size_t filled = 0;
-  member->replaceable.clear();  // it refers to the queue's begin
+  member->replaceable.clear();  // its entries refer to the queue's begin
   while (!member->queue.empty() && member->queue.begin()->first <= now_ns) {
     const Bytes& message = *member->queue.begin()->second;
     const bool fits = filled + message.size() <= shm::kDdsUsualSize;

@@ -1,6 +1,7 @@
-// Where the messages of programs that speak DDS pass through: keeps them in the order of their
-// virtual times until they are due, remembers participants and endpoints for those who join later,
-// and reports as gone what a dead process has left behind (shm/dds_exchange.h).
+// The hub through which the messages of programs that speak DDS pass: it keeps them in the order of
+// their virtual times until they are due, remembers participants and endpoints for processes that
+// join later, and reports as gone the entities that a dead process has left behind
+// (shm/dds_exchange.h).
 //
 // Used by the coordinator's only thread. Trusts nothing that processes write: messages are copied,
 // then checked. Times are virtual nanoseconds; kNeverNs for never.
@@ -24,7 +25,7 @@
 
 namespace tcs::dds {
 
-// Who looks on.
+// An observer of the messages that pass through the hub.
 class HubObserver {
  public:
   virtual ~HubObserver() = default;
@@ -43,10 +44,10 @@ class HubObserver {
 class HubPaths {
  public:
   virtual ~HubPaths() = default;
-  // When one that is sent now (its time_ns) reaches the process; never: it is lost. Asked once of
-  // each message and receiver, in the order of sending.
+  // When a message that is sent now (its time_ns) reaches the process; kNeverNs: the message is
+  // lost. Asked once for each message and receiver, in the order of sending.
   virtual std::int64_t ArrivalNs(const shm::DdsMessage& header, std::uint32_t to) = 0;
-  // How long it takes to hear of what another process has, when asked for it.
+  // How long a process takes to hear of another's participants and endpoints when it asks for them.
   virtual std::int64_t RoundTripNs(std::uint32_t one, std::uint32_t other) const = 0;
 };
 
@@ -61,52 +62,55 @@ class Hub {
   Hub(const Hub&) = delete;
   Hub& operator=(const Hub&) = delete;
 
-  // A new process, to which all that is there is reported. 0, with errno, if there is no room.
+  // A new process joins, and is told of all participants and endpoints. Returns 0, with errno, if
+  // there is no room.
   Number Join(std::int64_t now_ns);
-  // It has died, or executes another program.
+  // The process has died, or executes another program.
   void Leave(Number number, std::int64_t now_ns);
-  // It is stopped, so that it renews no lease: others miss it as they miss the dead, until it goes
-  // on. If they do by then, it and they find each other anew.
+  // The process is stopped, so that it renews no lease: others miss it, as they miss a dead
+  // process, until it goes on. If others have missed it by then, the process and the others find
+  // each other anew.
   void Stop(Number number, std::int64_t now_ns);
   void Continue(Number number, std::int64_t now_ns);
 
-  // Takes the messages in the first `bytes` of its outbox, sent at `now_ns` by a thread that had
-  // been charged `ran_ns`. Says what is wrong with the first one that is not as it must be, as the
-  // rest of a sentence about the process: it is dropped, and what follows it.
+  // Takes the messages in the first `bytes` of the process's outbox, sent at `now_ns` by a thread
+  // that had been charged `ran_ns`. Says what is wrong with the first malformed message, as the
+  // rest of a sentence about the process; that message and all after it are dropped.
   [[nodiscard]] std::string Send(Number from, std::size_t bytes, std::int64_t now_ns,
                                  std::int64_t ran_ns = 0);
 
   // When the process's next message is due.
   std::int64_t DueNs(Number number) const;
-  // Puts what is due into its inbox, as far as there is room; returns the bytes. From then on until
-  // it has come back for more it is delivering.
+  // Puts the messages that are due into the process's inbox, as far as there is room; returns the
+  // bytes. From then on the process is delivering, until it has come back for more.
   std::size_t Deliver(Number number, std::int64_t now_ns);
   void CameBack(Number number);
   bool IsDelivering(Number number) const;
-  // More waits for it, or is in its hands, than it can take at once (shm/dds_exchange.h). It stays
-  // so if it dies then.
+  // More messages wait for the process, or are in its hands, than it can take at once
+  // (shm/dds_exchange.h). A process that dies while it is full stays full.
   bool IsFull(Number number) const;
 
-  // What waits for the process and is not in its hands yet.
+  // The messages that wait for the process and are not in its hands yet.
   struct Backlog {
     std::size_t messages = 0, bytes = 0;
     std::int64_t due_ns = shm::kNeverNs;  // the first
   };
   Backlog BacklogOf(Number number) const;
 
-  // What the coordinator itself sends, due at `due_ns`, in `header` with size, times and sender
-  // left to be filled in.
+  // Sends a message of the coordinator itself, due at `due_ns`. Size, time and sender of `header`
+  // are filled in here.
   void SendOwn(shm::DdsMessage header, std::span<const std::byte> payload, std::int64_t due_ns);
-  // The earliest message for the coordinator, if it is from before or at `now_ns`. Participants,
-  // endpoints and what is addressed to it; kept only once it has asked to be told.
+  // The earliest message for the coordinator, if it is from before or at `now_ns`. Such messages
+  // are participants, endpoints and messages addressed to the coordinator; they are kept only once
+  // it has asked to be told.
   void TellOwn() { tells_own_ = true; }
   std::optional<Bytes> TakeOwn(std::int64_t now_ns);
   std::int64_t OwnDueNs() const { return own_.empty() ? shm::kNeverNs : own_.begin()->first; }
 
-  // Null: nobody. It outlives this.
+  // Null: nobody observes. The observer outlives this.
   void Observe(HubObserver* observer) { observer_ = observer; }
 
-  // Null: messages arrive when they are sent. It outlives this.
+  // Null: messages arrive when they are sent. `paths` outlives this.
   void Route(HubPaths* paths) { paths_ = paths; }
 
   // How many processes have joined so far: the largest number.
@@ -117,7 +121,7 @@ class Hub {
   struct Drops {
     std::uint64_t unreliable = 0;  // promised to nobody
     std::uint64_t replaced = 0;    // by later ones of a writer that keeps the last ones
-    std::uint64_t lost = 0;        // promised, but it does not take anything any more
+    std::uint64_t lost = 0;        // promised, but the process takes nothing any more
   };
   const Drops& drops() const { return drops_; }
 
@@ -126,24 +130,24 @@ class Hub {
   using Queued = std::multimap<std::int64_t, Message>;  // by the time when it is due
 
   struct Member {
-    char* area = nullptr;  // null: it has left
+    char* area = nullptr;  // null: the process has left
     UniqueFd fd;           // of the area
     bool delivers = false;
     bool full = false;
     bool stopped = false;
-    std::vector<Message> lease_ends;  // of one that is stopped, where others do not have them yet
+    std::vector<Message> lease_ends;  // while stopped: those that others do not have yet
     Queued queue;
     std::size_t queued_bytes = 0;
-    std::size_t delivered_bytes = 0;  // in its inbox until it comes back for more
-    std::size_t known_bytes = 0;      // of what is known of it
-    // While it is full: what may be replaced of the queue, by writer and instance.
+    std::size_t delivered_bytes = 0;  // in the inbox until the process comes back for more
+    std::size_t known_bytes = 0;      // of its participants and endpoints
+    // While the process is full: the queued messages that may be replaced, by writer and instance.
     std::map<std::pair<Guid, std::uint64_t>, std::deque<Queued::iterator>> replaceable;
 
     shm::DdsArea& shown() const { return *reinterpret_cast<shm::DdsArea*>(area); }
     char* outbox() const { return area + shm::kDdsHeaderSize; }
     char* inbox() const { return outbox() + shm::kDdsBoxSize; }
     void ShowDue() const;
-    void ShowFull(Number number, bool is_full) const;  // of another, in its area
+    void ShowFull(Number number, bool is_full) const;  // of another process, in this area
   };
   // A participant or an endpoint.
   struct Known {
@@ -167,9 +171,9 @@ class Hub {
   Member* Find(Number number);
   const Member* Find(Number number) const;
   void Queue(Number to, std::int64_t due_ns, const Message& message);
-  // The same of one that is sent now.
+  // The same, for a message that is sent now.
   void Pass(Number to, const shm::DdsMessage& header, const Message& message);
-  // What others get when the leases of what a process has are over.
+  // The messages that others get when the leases of a process's entities are over.
   std::vector<Message> EndLeases(Number number, const std::vector<Known>& of, std::int64_t now_ns);
   void Introduce(Number to, Number whom, std::int64_t now_ns);
   void QueueForOthers(Number from, std::int64_t due_ns, const Message& message);
@@ -185,7 +189,7 @@ class Hub {
   Queued own_;                           // for the coordinator
   std::vector<Member> members_;          // of number i + 1
   std::vector<Known> known_;             // in the order in which they came
-  std::map<GuidPrefix, Number> owners_;  // of participants that are there
+  std::map<GuidPrefix, Number> owners_;  // of participants that exist
   Drops drops_;
 };
 

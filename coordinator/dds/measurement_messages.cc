@@ -188,7 +188,7 @@ Owned<BoolMessage> ToMessage(std::int64_t, const ContactMeasurement& measured) {
 }
 
 SensorMessage MessageOf(const Measurement& measurement) {
-  // As Measurement has its alternatives, the first of which is none.
+  // In the order of Measurement's alternatives, the first of which is none.
   static constexpr SensorMessage kMessages[] = {
       SensorMessage::kImu,           SensorMessage::kOdometry,      SensorMessage::kTransforms,
       SensorMessage::kString,        SensorMessage::kLaserScan,     SensorMessage::kPointCloud,

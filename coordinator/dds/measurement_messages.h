@@ -1,4 +1,4 @@
-// What sensors of robots measure, as ROS 2 messages.
+// The measurements of robots' sensors, as ROS 2 messages.
 //
 // Stamps and units as in ros_messages.h. Covariances are diagonal; where nothing is wrong with a
 // value they are zero, which ROS 2 takes for unknown.
@@ -36,9 +36,10 @@ namespace tcs::dds {
 [[nodiscard]] Owned<BoolMessage> ToMessage(std::int64_t stamp_ns,
                                            const ContactMeasurement& contact);
 
-// Which message that is; there is a measurement.
+// The message for the measurement, which must not be empty.
 [[nodiscard]] SensorMessage MessageOf(const Measurement& measurement);
-// As the bytes of its message, as that release has it; there is a measurement.
+// The bytes of the measurement's message, as that release has it. The measurement must not be
+// empty.
 [[nodiscard]] std::vector<std::byte> EncodeMeasurement(std::int64_t stamp_ns,
                                                        const Measurement& measurement,
                                                        RosRelease release);

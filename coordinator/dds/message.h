@@ -1,5 +1,5 @@
-// Messages of shm/dds_exchange.h as the coordinator keeps them: one after another of header,
-// payload, padding.
+// Messages of shm/dds_exchange.h as the coordinator keeps them: header, payload and padding, one
+// after another.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace tcs::dds {
 
-// What all GUIDs of a participant have in common.
+// The bytes that all GUIDs of a participant have in common.
 using GuidPrefix = std::array<std::uint8_t, 12>;
 
 inline GuidPrefix PrefixOf(const Guid& guid) {
@@ -30,15 +30,15 @@ inline shm::DdsMessage HeaderOf(std::span<const std::byte> message) {
   return header;
 }
 
-// The same with this header.
+// Writes this header into a message like that.
 inline void PutHeader(const shm::DdsMessage& header, std::span<std::byte> message) {
   std::memcpy(message.data(), &header, sizeof header);
 }
 
-// Whether it is for one endpoint only.
+// Whether the message is for one endpoint only.
 inline bool IsAddressed(const shm::DdsMessage& header) { return GuidAt(header.other) != Guid{}; }
 
-// Of a whole message whose header is true.
+// The payload of a whole message whose header is true.
 inline std::span<const std::byte> PayloadOf(std::span<const std::byte> message) {
   return message.subspan(sizeof(shm::DdsMessage), HeaderOf(message).payload_size);
 }

@@ -13,7 +13,7 @@ namespace {
 using shm::DdsKind;
 using shm::DdsMessage;
 
-constexpr std::uint8_t kParticipantNumber = 1;  // the last but one byte of its GUID
+constexpr std::uint8_t kParticipantNumber = 1;  // the last but one byte of a participant's GUID
 // ROS 2's middleware takes participants that say so for its own kind, with nodes.
 constexpr const char* kEnclave = "enclave=/;";
 
@@ -23,7 +23,7 @@ std::uint64_t NumberOf(const Guid& writer) {
   return number;
 }
 
-// From any GUID of a participant's to its own.
+// From any GUID of a participant's endpoints to the participant's own.
 Guid WithParticipantId(Guid guid) {
   guid[12] = guid[13] = 0;
   guid[14] = kParticipantNumber;
@@ -112,7 +112,7 @@ void OwnEndpoints::Write(Index writer, std::span<const std::byte> cdr, std::int6
     }
   }
   DdsMessage header = SampleHeader(own, timestamp_ns);
-  // Where nobody reads, it is still for those who look on.
+  // A sample that nobody reads is still for the observers.
   if (reached.empty()) reached.insert(shm::kDdsCoordinator);
   for (const Hub::Number process : reached) {
     header.to = process;
@@ -120,7 +120,8 @@ void OwnEndpoints::Write(Index writer, std::span<const std::byte> cdr, std::int6
   }
 }
 
-// Who has a transient-local writer tells such readers what it has kept, and when that was all.
+// The owner of a transient-local writer sends such readers the samples that the writer has kept,
+// and says when those were all.
 void OwnEndpoints::Meet(const Guid& guid, const Remote& remote, std::int64_t now_ns) {
   if (!WantsHistory(remote.endpoint)) return;
   for (const Own& own : own_) {
@@ -163,7 +164,8 @@ void OwnEndpoints::Notice(const DdsMessage& header, std::span<const std::byte> p
   if (remotes_.insert_or_assign(subject, remote).second) Meet(subject, remote, header.time_ns);
 }
 
-// The sample has come for one of our readers; those that the writer does not suit must not have it.
+// The sample has come for one of our readers; readers that the writer does not suit must not have
+// it.
 bool OwnEndpoints::Matches(const Own& reader, const Remote& writer) {
   const Endpoint &ours = reader.endpoint, &theirs = writer.endpoint;
   return ours.kind == EndpointKind::kReader && theirs.kind == EndpointKind::kWriter &&

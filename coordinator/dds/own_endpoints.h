@@ -1,9 +1,11 @@
-// The coordinator's own writers and readers: it is one of those that the hub connects, without
-// being a DDS participant. One participant per domain stands for all of its endpoints there.
+// The coordinator's own writers and readers: the hub connects the coordinator like a process,
+// without it being a DDS participant. A participant per domain stands for all of its endpoints
+// there.
 //
-// Whether a client's reader matches is decided where it is, by Cyclone: each process with a reader
-// of the topic gets the samples, once. Whether a client's writer suits one of ours is decided by
-// Cyclone, too, where the writer is, and among several of ours of a topic here.
+// Cyclone decides in the reader's process whether a client's reader matches: every process with a
+// reader of the topic gets the samples, once. Cyclone also decides in the writer's process whether
+// a client's writer suits a reader of ours. If several readers of ours have the topic, the choice
+// among them is made here.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +31,8 @@ class OwnEndpoints {
   // The hub outlives this.
   explicit OwnEndpoints(Hub& hub) : hub_(hub) {}
 
-  // Announced at `now_ns` to all that have joined, and to those who will.
+  // The endpoint is announced at `now_ns` to all processes that have joined, and to those that
+  // will.
   Index Add(const Endpoint& endpoint, int domain, std::int64_t now_ns);
 
   // To all who read the topic, at `due_ns`, not before what it was written at `now_ns`;
@@ -38,19 +41,19 @@ class OwnEndpoints {
              std::int64_t due_ns);
 
   struct Sample {
-    std::vector<Index> readers;  // all that the writer suits, or the one that it is addressed to
+    std::vector<Index> readers;  // all that the writer suits, or the addressed one
     std::int64_t at_ns;          // when it was written
-    std::uint64_t writer;        // another number for each
+    std::uint64_t writer;        // a different number for each writer
     std::int64_t sender_ran_ns;  // as Hub::Send was told
     std::vector<std::byte> cdr;
   };
-  // The next sample that was written by `now_ns` to one of the readers. Takes notice of who reads
-  // and writes what, too.
+  // The next sample that was written by `now_ns` to one of the readers. Also takes notice of
+  // others' readers and writers.
   std::optional<Sample> Take(std::int64_t now_ns);
 
-  // What each endpoint is known by: its participant's twelve bytes, then its own four.
+  // The endpoint's GUID: the twelve bytes of its participant, then four of its own.
   Guid GuidOf(Index endpoint) const { return own_[endpoint].guid; }
-  // What the participant is known by that it belongs to.
+  // The GUID of the participant that the endpoint belongs to.
   Guid ParticipantOf(Index endpoint) const;
 
  private:
@@ -64,7 +67,7 @@ class OwnEndpoints {
     Guid guid{};
     std::deque<Kept> history;  // of a transient-local writer
   };
-  // Another's.
+  // An endpoint of another process.
   struct Remote {
     Hub::Number process = 0;
     int domain = 0;

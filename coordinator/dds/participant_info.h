@@ -1,6 +1,6 @@
-// What a participant tells ROS 2's graph tools on the topic `ros_discovery_info` (of the type
-// rmw_dds_common/msg/ParticipantEntitiesInfo, reliable and transient-local): which nodes it has,
-// and which endpoints are whose.
+// The information of a participant for ROS 2's graph tools, on the topic `ros_discovery_info` (of
+// the type rmw_dds_common/msg/ParticipantEntitiesInfo, reliable and transient-local): which nodes
+// the participant has, and which endpoints belong to which node.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +30,9 @@ struct ParticipantInfo {
   friend bool operator==(const ParticipantInfo&, const ParticipantInfo&) = default;
 };
 
-// The type has one name and two forms. A participant that gets the other form cannot read it, so
-// who speaks to several must know which ones they use: by what they say themselves.
+// The type has one name and two forms. A participant that gets the other form cannot read it. So a
+// participant that speaks to several others must know which forms they use: the forms of the
+// samples that they send themselves.
 enum class GidForm {
   kHumble,  // 24 octets, of which the last 8 are zero
   kIron,    // 16 octets: Iron, Jazzy and later
@@ -44,7 +45,7 @@ struct DecodedParticipant {
   GidForm form = GidForm::kHumble;
 };
 
-// A sample in whichever form it is.
+// Decodes a sample of either form.
 [[nodiscard]] std::variant<DecodedParticipant, CdrError> DecodeParticipant(
     std::span<const std::byte> cdr);
 

@@ -1,5 +1,5 @@
-// The quality of service of one DDS endpoint: what a scenario asks for, what a recording says was
-// offered, what `tcsim topics` shows. The policies that ROS 2 knows, with its defaults.
+// The quality of service of one DDS endpoint: as a scenario asks for it, as a recording says that
+// it was offered, as `tcsim topics` shows it. The policies that ROS 2 knows, with its defaults.
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ struct Qos {
   friend bool operator==(const Qos&, const Qos&) = default;
 };
 
-// As they are written in scenarios and results: "best_effort", "keep_last", "transient_local".
+// The names in scenarios and results: "best_effort", "keep_last", "transient_local".
 [[nodiscard]] std::string NameOf(Reliability reliability);
 [[nodiscard]] std::string NameOf(History history);
 [[nodiscard]] std::string NameOf(Durability durability);

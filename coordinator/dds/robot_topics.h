@@ -1,5 +1,6 @@
-// The coordinator's own ends of topics, as bytes: what it writes of bodies, and what it reads for
-// them. No transport here: whoever carries samples calls these.
+// The coordinator's own ends of topics, as bytes: the samples that it writes about bodies, and the
+// samples that it reads for them. No transport here: the code that carries samples calls these
+// functions.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +16,10 @@
 
 namespace tcs::dds {
 
-// One sensor of a scenario (DdsSensorSpec).
+// A sensor of a scenario (DdsSensorSpec).
 class SensorEncoder {
  public:
-  // All messages but JointState tell of one body.
+  // Every message but JointState tells of one body.
   SensorEncoder(SensorMessage message, std::vector<std::string> bodies,
                 const BodyVariances& variances = {});
 

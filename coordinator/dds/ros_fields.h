@@ -1,4 +1,4 @@
-// What most messages have in them.
+// The fields that most messages have in them.
 #pragma once
 
 #include <array>
@@ -21,7 +21,8 @@ inline QuaternionMessage ToQuaternion(const std::array<double, 4>& q) {
   return {q[0], q[1], q[2], q[3]};
 }
 
-// A covariance of three numbers, or of six, the last three of which are of turns; all independent.
+// A covariance of three numbers, or of six, the last three of which are of turns. The numbers are
+// independent.
 inline void SetDiagonal(double (&covariance)[9], double variance) {
   for (int i = 0; i < 3; ++i) covariance[4 * i] = variance;
 }

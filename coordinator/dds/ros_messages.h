@@ -1,4 +1,4 @@
-// What a body does, as ROS 2 messages, and what it is told.
+// The motion of bodies and the commands to them, as ROS 2 messages.
 //
 // SI units and REP-103's axes, as in simbody_bridge/dynamics.h. Stamps are virtual CLOCK_REALTIME
 // in nanoseconds since 1970; a message holds seconds in 32 bits, as ROS 2 does, so until 2038. The
@@ -24,11 +24,11 @@
 namespace tcs::dds {
 
 struct MessageError {
-  std::string message;  // what is wrong with a sample, as the rest of a sentence about it
+  std::string message;  // the fault in a sample, as the rest of a sentence about it
 };
 
-// Of what is said of a body, on each axis, none of which depends on another one; in the unit
-// squared. 0: nothing is known to be wrong, which ROS 2 takes for unknown.
+// The variances of the values that a message has of a body, on each axis, none of which depends on
+// another one; in the unit squared. 0: no error is known, which ROS 2 takes for unknown.
 struct BodyVariances {
   double position = 0, orientation = 0, linear_velocity = 0, angular_velocity = 0;
   double angular_rate = 0, proper_acceleration = 0;
@@ -42,11 +42,11 @@ struct BodyVariances {
 // The velocities in the body's frame.
 [[nodiscard]] Owned<TwistMessage> ToTwist(const BodyState& state);
 
-// Free bodies have no joints but the six that hang them in the world: each body is a chain of
-// BODY/x, BODY/y, BODY/z (m, m/s) and BODY/yaw, BODY/pitch, BODY/roll (rad and rad/s; rotations
-// about the fixed axes x, y, z in this order, as REP-103 has them). With the nose straight up or
-// down roll and yaw are one rotation: it counts as yaw. Efforts are not known, so their list is
-// empty. `bodies` and `states` go together.
+// Free bodies have no joints but the six that hang them in the world: a body is a chain of BODY/x,
+// BODY/y, BODY/z (m, m/s) and BODY/yaw, BODY/pitch, BODY/roll (rad and rad/s; rotations about the
+// fixed axes x, y, z in this order, as REP-103 has them). With the nose straight up or down roll
+// and yaw are one rotation, which counts as yaw. Efforts are not known, so their list is empty.
+// `bodies` and `states` go together.
 [[nodiscard]] Owned<JointStateMessage> ToJointState(std::int64_t stamp_ns,
                                                     std::span<const std::string> bodies,
                                                     std::span<const BodyState> states);
@@ -58,22 +58,22 @@ struct BodyVariances {
 
 [[nodiscard]] Owned<ClockMessage> ToClock(std::int64_t stamp_ns);
 
-// What a body feels, its frame called after it. Where there is no acceleration yet it says so as
-// Imu does: by a covariance that begins with -1.
+// The motion that a body feels, in the frame that is called after the body. Where there is no
+// acceleration yet the message says so as Imu does: by a covariance that begins with -1.
 [[nodiscard]] Owned<ImuMessage> ToImu(std::int64_t stamp_ns, std::string_view body,
                                       const BodyState& state, const InertialReading& felt,
                                       const BodyVariances& variances = {});
 
-// Force and torque in the world's frame, the force at the centre of mass, as with UDP. Refused
-// where they are not finite.
+// Force and torque in the world's frame, the force at the centre of mass, as with UDP. Values that
+// are not finite are refused.
 [[nodiscard]] std::variant<Wrench, MessageError> ToWrench(const WrenchMessage& message);
 
-// How fast a robot is to go that drives on wheels: along x and about z; it can do nothing else, so
+// How fast a robot on wheels is to go: along x and about z. Such a robot can do nothing else, so
 // the other components mean nothing.
 [[nodiscard]] std::variant<PlanarSpeed, MessageError> ToPlanarSpeed(const TwistMessage& message);
 
 // A number for each of `joints` joints, in their order, as the forward controllers of ros2_control
-// have it: what of the joint is wanted says `quantity`.
+// have it. `quantity` says which quantity of the joint is wanted.
 [[nodiscard]] std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
     const Float64MultiArrayMessage& message, std::size_t joints, JointQuantity quantity);
 
@@ -81,8 +81,9 @@ struct BodyVariances {
 [[nodiscard]] std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
     const JointStateMessage& message, std::span<const std::string> joints);
 
-// For any of `joints`, by name. A stamp of 0 means that it starts when it comes, as ROS 2 has it;
-// another one is so far ahead of virtual time. Accelerations and efforts mean nothing here.
+// For any of `joints`, by name. A stamp of 0 means that the trajectory starts when it comes, as ROS
+// 2 has it; any other stamp is `realtime_offset` ahead of virtual time. Accelerations and efforts
+// mean nothing here.
 [[nodiscard]] std::variant<JointTrajectory, MessageError> ToJointTrajectory(
     const JointTrajectoryMessage& message, std::span<const std::string> joints,
     VirtualDuration realtime_offset);

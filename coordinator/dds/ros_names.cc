@@ -74,7 +74,7 @@ std::optional<std::string> WhatIsWrongWithTopic(std::string_view topic) {
 
 std::string RosToken(std::string_view name) {
   std::string token;
-  // One that began with '_' would be hidden.
+  // A token that began with '_' would be hidden.
   if (name.empty() || !IsLetter(name[0])) token = "robot_";
   for (const char c : name) {
     const char allowed = IsWordCharacter(c) ? c : '_';

@@ -31,7 +31,7 @@ enum class SensorMessage {
   kBool
 };
 inline constexpr std::size_t kBodyMessages = 4;
-// Messages that move them; those after the first move joints.
+// Messages that move bodies; the messages after the first move joints.
 enum class CommandMessage { kWrench, kFloat64MultiArray, kJointState, kTwist, kJointTrajectory };
 
 // In the order of the enumerators.
@@ -39,12 +39,14 @@ enum class CommandMessage { kWrench, kFloat64MultiArray, kJointState, kTwist, kJ
 [[nodiscard]] const std::vector<std::string>& CommandMessageNames();
 inline constexpr std::string_view kClockMessageName = "rosgraph_msgs/msg/Clock";
 
-// Where ROS 2's middleware says which endpoints are whose (participant_info.h). The name is DDS's.
+// The topic on which ROS 2's middleware says which node has which endpoints (participant_info.h).
+// The name is DDS's.
 inline constexpr std::string_view kDiscoveryTopic = "ros_discovery_info";
 inline constexpr std::string_view kDiscoveryMessageName =
     "rmw_dds_common/msg/ParticipantEntitiesInfo";
 
-// The releases of ROS 2 that say it in the same form, by the first of them.
+// The releases of ROS 2 whose middleware says that in the same form, named by the first release of
+// each form.
 enum class RosRelease { kHumble, kIron };
 
 [[nodiscard]] const std::string& NameOf(SensorMessage message);
@@ -53,11 +55,12 @@ enum class RosRelease { kHumble, kIron };
 // "nav_msgs/Odometry" means "nav_msgs/msg/Odometry"; anything else is returned as it is.
 [[nodiscard]] std::string FullMessageName(std::string_view name);
 
-// Why `topic` is no absolute name of a ROS 2 topic, as the rest of a sentence; none if it is one.
+// Why `topic` is no absolute name of a ROS 2 topic, as the rest of a sentence; none: `topic` is
+// one.
 [[nodiscard]] std::optional<std::string> WhatIsWrongWithTopic(std::string_view topic);
 
-// What a name of a scenario becomes as a part of a name of ROS 2's: "r2-d2" is "r2_d2", "7"
-// is "robot_7".
+// The form of a scenario's name as a part of a name of ROS 2's: "r2-d2" is "r2_d2", "7" is
+// "robot_7".
 [[nodiscard]] std::string RosToken(std::string_view name);
 
 [[nodiscard]] std::string DdsTopic(std::string_view ros_topic);

@@ -21,7 +21,7 @@ void TopicLog::Entered(const DdsMessage& header, std::span<const std::byte> payl
   if (header.kind == DdsKind::kSample) NoteSample(header, payload);
 }
 
-// The topic that the endpoint is counted with; none: there is no room for it.
+// The topic that the endpoint is counted with; none: there is no room for the endpoint.
 std::optional<TopicLog::Topic> TopicLog::Note(const Endpoint& endpoint, int domain,
                                               Speaker speaker) {
   const std::string topic = RosTopic(endpoint.topic), type = RosType(endpoint.type);
@@ -55,7 +55,7 @@ std::optional<TopicLog::Topic> TopicLog::Note(const Endpoint& endpoint, int doma
   return report - reports_.begin();
 }
 
-// New, or with another QoS.
+// The endpoint is new, or has another QoS.
 void TopicLog::NoteEndpoint(const DdsMessage& header, std::span<const std::byte> payload) {
   const Guid guid = GuidAt(header.subject);
   if (known_.contains(guid)) return;
@@ -82,7 +82,8 @@ void TopicLog::NoteSample(const DdsMessage& header, std::span<const std::byte> p
   const auto found = known_.find(GuidAt(header.subject));
   if (found == known_.end() || header.sample_kind != shm::kDdsData) return;
   Known& writer = found->second;
-  // What a late reader is told once more; unless nobody was there when it was written.
+  // A sample that a late reader is sent once more; unless nobody was there when the sample was
+  // written.
   if (IsAddressed(header) &&
       (header.to != shm::kDdsCoordinator || header.source_timestamp_ns <= writer.timestamp_ns)) {
     return;
@@ -100,7 +101,7 @@ void TopicLog::NoteSample(const DdsMessage& header, std::span<const std::byte> p
   writer.sent_to.insert(header.to);
 }
 
-// Of a writer that is gone nobody knows the topic any more.
+// The topic of a writer that is gone is not known any more.
 void TopicLog::Delivered(const DdsMessage& header, std::uint32_t to, std::int64_t at_ns) {
   if (deliveries_.empty() || header.kind != DdsKind::kSample ||
       header.sample_kind != shm::kDdsData) {

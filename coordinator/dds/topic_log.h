@@ -1,7 +1,9 @@
-// What goes over the topics of a run, as the hub sees it: for topics.json and for recordings.
+// The samples that go over the topics of a run, as the hub sees them: for topics.json and for
+// recordings.
 //
-// A sample is sent once to each process that reads it; here it counts once. What is sent again to a
-// reader that came late does not count, and neither does what a program writes and nobody reads.
+// A sample is sent once to each process that reads it; here it counts once. A sample that is sent
+// again to a reader that came late does not count, and neither does a sample that a program writes
+// and nobody reads.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +22,7 @@
 
 namespace tcs::dds {
 
-// Whose process it is.
+// The names of a process and of its robot.
 struct Speaker {
   std::string process, robot;  // as in EndpointReport
 };
@@ -40,7 +42,7 @@ class TopicLog : public HubObserver {
   struct Delivery {
     Topic topic;
     Hub::Number from, to;  // 0: the coordinator
-    std::int64_t sent_ns;  // as the hub has it: what is on its way is sent when it arrives
+    std::int64_t sent_ns;  // the hub's: the coordinator's samples are sent when they arrive
     std::int64_t source_timestamp_ns;
     std::int64_t received_ns;
   };
@@ -50,14 +52,14 @@ class TopicLog : public HubObserver {
   };
 
   explicit TopicLog(std::function<Speaker(Hub::Number)> who) : who_(std::move(who)) {}
-  // Null: nobody. They outlive this.
+  // Null: nobody is told. The listeners outlive this.
   void Tell(Listener* listener) { listener_ = listener; }
   void TellDeliveries(DeliveryListener* listener) { deliveries_.push_back(listener); }
   void TellNobody() { deliveries_.clear(); }
 
   const std::vector<TopicReport>& reports() const { return reports_; }
-  // False: a program has made ever other topics, or writers and readers of ever other QoS. Of those
-  // beyond kMostEnds nothing is known.
+  // False: a program has made ever other topics, or writers and readers of ever other QoS. Nothing
+  // is known of the ends beyond kMostEnds.
   bool is_whole() const { return is_whole_; }
   static constexpr std::size_t kMostEnds = 10'000;
 
@@ -71,7 +73,7 @@ class TopicLog : public HubObserver {
     Topic topic;
     Hub::Number from;
     Guid participant;
-    // The last sample, and whom it was sent to so far.
+    // The last sample, and the processes that it was sent to so far.
     std::int64_t timestamp_ns = INT64_MIN;
     std::uint32_t payload_size = 0;
     std::set<std::uint32_t> sent_to;
@@ -85,7 +87,7 @@ class TopicLog : public HubObserver {
   Listener* listener_ = nullptr;
   std::vector<DeliveryListener*> deliveries_;
   std::vector<TopicReport> reports_;
-  std::map<Guid, Known> known_;  // that are there
+  std::map<Guid, Known> known_;  // the endpoints that exist
   std::size_t ends_ = 0;         // in reports_
   bool is_whole_ = true;
 };

@@ -51,7 +51,7 @@ OrderedJson ToJson(const TopicReport& topic) {
   return json;
 }
 
-// Thrown, as Json::exception is, for what is not as above.
+// Thrown, as Json::exception is, for a file that is not as above.
 struct UnknownName {};
 
 template <class Kind>

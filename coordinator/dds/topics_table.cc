@@ -57,13 +57,13 @@ std::string QosText(const Qos& qos) {
 
 constexpr const char* kSimulation = "tcsim";
 
-// What `tcsim run --record` adds reads everything, and is nobody's other end.
+// A reader that `tcsim run --record` adds reads everything, and is nobody's other end.
 bool IsRecorder(const EndpointReport& end) {
   return end.kind == EndpointKind::kReader && end.process == kSimulation &&
          end.qos.history == History::kKeepAll;
 }
 
-// The first one's process at that end of the topic; none: nobody is there.
+// The process of the first endpoint at that end of the topic; none: there is no endpoint.
 std::optional<std::string> FirstAt(const TopicReport& topic, EndpointKind kind) {
   for (const EndpointReport& end : topic.endpoints) {
     if (end.kind == kind && !IsRecorder(end)) return end.process;
@@ -71,7 +71,7 @@ std::optional<std::string> FirstAt(const TopicReport& topic, EndpointKind kind) 
   return std::nullopt;
 }
 
-// Why the reader of a topic that nobody writes may have been meant for what `other` has.
+// Why the reader of a topic that nobody writes may have been meant for the topic `other`.
 std::optional<std::string> WhyApart(const TopicReport& topic, const std::string& reader,
                                     const TopicReport& other) {
   const auto writer = FirstAt(other, EndpointKind::kWriter);

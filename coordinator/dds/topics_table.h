@@ -1,4 +1,4 @@
-// What `tcsim topics` prints.
+// The output of `tcsim topics`.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@ namespace tcs::dds {
 // each topic a line per endpoint. Ends with a line end.
 [[nodiscard]] std::string TopicsTable(const std::vector<TopicReport>& topics, bool with_qos);
 
-// What a user of the topics will want to mend, one sentence each: readers that no writer suits, and
-// samples that were dropped, and what MismatchWarnings has.
+// The faults that a user of the topics will want to mend, one sentence each: readers that no writer
+// suits, and samples that were dropped, and what MismatchWarnings has.
 [[nodiscard]] std::vector<std::string> TopicWarnings(const std::vector<TopicReport>& topics);
 
-// Of these, what keeps the two ends of a topic apart: readers that no writer suits, one name with
-// two types, and ends of the simulation and of a program that are in two domains, or that look like
-// one topic with two names.
+// Of these, the faults that keep the two ends of a topic apart: readers that no writer suits, one
+// name with two types, and ends of the simulation and of a program that are in two domains, or that
+// look like one topic with two names.
 [[nodiscard]] std::vector<std::string> MismatchWarnings(const std::vector<TopicReport>& topics);
 
 }  // namespace tcs::dds

@@ -56,7 +56,7 @@ struct Field {
   std::string nested;  // "std_msgs/Header"; empty: a plain type
 };
 
-// None for a constant.
+// None: the line is a constant.
 std::optional<Field> FieldIn(std::string_view line, std::string_view package) {
   const std::size_t space = line.find(' ');
   Field field{.name = line.substr(space + 1)};
@@ -103,7 +103,7 @@ std::string Describe(std::string_view type, std::set<std::string>* nested) {
   return fmt::format(R"({{"type_name": "{}", "fields": [{}]}})", InFull(type), fields);
 }
 
-// With all types that it consists of, in alphabetical order.
+// The description with all types that the type consists of, in alphabetical order.
 std::string DescribeInFull(std::string_view type) {
   std::set<std::string> pending;
   const std::string own = Describe(type, &pending);

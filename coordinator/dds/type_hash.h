@@ -13,12 +13,12 @@ namespace tcs::dds {
 // or tcs does not know the type.
 [[nodiscard]] std::string TypeHashOf(std::string_view type, RosRelease release);
 
-// What an endpoint of the type says in its USER_DATA, as that release's middleware expects it:
+// The USER_DATA of an endpoint of the type, as that release's middleware expects it:
 // "typehash=RIHS01_...;", or nothing.
 [[nodiscard]] std::string UserDataOf(std::string_view type, RosRelease release);
-// The same of a hash.
+// The same, for a hash.
 [[nodiscard]] std::string UserDataWith(std::string_view hash);
-// The hash that some endpoint's USER_DATA says, which may be any bytes; empty: it says none.
+// The hash in some endpoint's USER_DATA, which may be any bytes; empty: there is none.
 [[nodiscard]] std::string TypeHashIn(std::string_view user_data);
 
 }  // namespace tcs::dds

@@ -87,7 +87,7 @@ bool Wake(pid_t coordinator, int wake_fd) {
   const std::string path = fmt::format("/proc/{}/fd/{}", coordinator, wake_fd);
   const UniqueFd pipe(open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
   if (!pipe) return false;
-  // One that is full wakes it as well.
+  // A full pipe wakes the coordinator as well.
   return write(pipe.get(), "?", 1) == 1 || errno == EAGAIN;
 }
 

@@ -12,11 +12,11 @@
 
 namespace tcs {
 
-// What the coordinator was doing, as it has noted it, and as the kernel sees it. Times are the
+// The activity of the coordinator, as it has noted it, and as the kernel sees it. Times are the
 // host's, in nanoseconds.
 struct CoordinatorState {
   Doing doing = Doing::kPrepares;
-  std::int64_t since_ns = 0;  // so long before it was asked
+  std::int64_t since_ns = 0;  // so long before the question
   int host_cpu = -1;
   pid_t dispatched_tid = 0;  // the last; 0: none yet
   std::int64_t dispatched_since_ns = 0;
@@ -25,11 +25,11 @@ struct CoordinatorState {
 };
 
 struct StateAnswer {
-  std::optional<std::string> text;  // JSON; none: it has not answered in time
-  std::string error;                // one sentence, where nobody could be asked
-  CoordinatorState coordinator;     // when it was asked
+  std::optional<std::string> text;  // JSON; none: no answer in time
+  std::string error;                // one sentence, where no coordinator could be asked
+  CoordinatorState coordinator;     // at the question
   std::int64_t waited_ns = 0;       // real, until the answer or the end of waiting,
-  std::int64_t computed_ns = 0;     // and what it has had of a processor meanwhile
+  std::int64_t computed_ns = 0;     // and the coordinator's processor time meanwhile
 };
 
 // Waits at most so long, of real time, for an answer. Only one process asks a run at a time: others

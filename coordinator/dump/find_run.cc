@@ -42,14 +42,15 @@ std::vector<pid_t> AllProcesses() {
   return all;
 }
 
-// A run that is about to begin has not written yet whose memory it is: that has its magic last.
+// A run that is about to begin has not written yet whose memory this is: the memory gets its magic
+// last.
 bool HasBegun(const UniqueFd& memory) {
   std::uint32_t magic = 0;
   static_assert(offsetof(StatePage, magic) == 0 && sizeof StatePage::magic == sizeof magic);
   return pread(memory.get(), &magic, sizeof magic, 0) == sizeof magic && magic != 0;
 }
 
-// The memory that the process shares with whoever asks; none if it has none yet, or may not be
+// The memory that the process shares with an asker; none: the process has none yet, or may not be
 // looked into.
 UniqueFd StateMemoryOf(pid_t pid) {
   const std::string folder = ProcOf(pid) + "/fd";
@@ -77,7 +78,7 @@ std::optional<uid_t> UserOf(pid_t pid) {
   return std::nullopt;
 }
 
-// Others have the memory, too: the block detector, and whoever asks just now.
+// Other processes have the memory, too: the block detector, and a process that asks just now.
 bool IsCoordinatorOf(pid_t pid, const UniqueFd& memory) {
   pid_t coordinator = 0;
   static_assert(sizeof StatePage::coordinator_pid == sizeof coordinator);
@@ -98,7 +99,7 @@ std::string NameOf(pid_t pid) {
   return name;
 }
 
-// What the kernel says, whoever asks: root, too, takes CAP_SYS_PTRACE.
+// The kernel's answer, for any caller: root, too, needs CAP_SYS_PTRACE.
 bool MayLookInto(pid_t pid) {
   DIR* descriptors = opendir((ProcOf(pid) + "/fd").c_str());
   if (descriptors != nullptr) closedir(descriptors);
@@ -112,7 +113,7 @@ std::string OnlyOwnerMayAsk(pid_t pid, uid_t owner) {
                      owner == 0 ? name : name + root);
 }
 
-// One of somebody else's processes that is called as tcsim is.
+// A sentence on another user's process that is called as tcsim is.
 std::string OfOthers() {
   for (const pid_t pid : AllProcesses()) {
     const auto owner = UserOf(pid);

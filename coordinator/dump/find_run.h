@@ -1,6 +1,6 @@
-// The runs that go on on this machine, and the one that somebody means. Reads /proc: what is found
-// is what the kernel lets the caller look into, which is what the same user has started, and for
-// root everything.
+// The runs that go on on this machine, and the one that a user means. Reads /proc, and finds the
+// runs that the kernel lets the caller look into: those that the same user has started, and for
+// root all.
 #pragma once
 
 #include <sys/types.h>
@@ -14,16 +14,17 @@
 namespace tcs {
 
 struct FoundRun {
-  pid_t coordinator = 0;  // as this process knows it
-  std::string folder;     // of its results, as the run knows it; empty: it has none
+  pid_t coordinator = 0;  // its number for this process
+  std::string folder;     // of the run's results, as the run knows it; empty: there is none
   UniqueFd memory;        // state_page.h, for reading and writing
 };
 
-// All that the caller may ask.
+// The runs that the caller may ask.
 [[nodiscard]] std::vector<FoundRun> FindRuns();
 
-// Of those the one that `named` means: a folder, the number of a process of the run, or of one that
-// has started it; empty: the only one. Or why there is no such, as one sentence.
+// The one of `runs` that `named` means: a folder, the number of a process of the run, or of a
+// process that has started the run; empty: the only run. Or one sentence on why there is no such
+// run.
 [[nodiscard]] std::variant<FoundRun, std::string> ChooseRun(std::vector<FoundRun> runs,
                                                             const std::string& named);
 

@@ -34,7 +34,7 @@ Json KernelStateOf(pid_t pid, pid_t tid) {
   const std::string stat = FirstLine(folder + "/stat");
   const std::size_t begin = stat.find('('), end = stat.rfind(')');
   if (begin == std::string::npos || end == std::string::npos) return nullptr;
-  // From the third on, which is the state.
+  // The fields from the third on, which is the state.
   std::vector<std::string> fields;
   std::istringstream rest(stat.substr(end + 1));
   for (std::string field; rest >> field;) fields.push_back(field);
@@ -49,7 +49,7 @@ Json KernelStateOf(pid_t pid, pid_t tid) {
        (std::atoll(fields[kUser].c_str()) + std::atoll(fields[kSystem].c_str())) * tick_ns}};
   const std::string in = FirstLine(folder + "/wchan");
   if (!in.empty() && in != "0") state["in"] = in;
-  // "running", or the number of the call and its arguments; -1: it waits, but in none.
+  // "running", or the number of the call and its arguments; -1: the thread waits, but in no call.
   const std::string call = FirstLine(folder + "/syscall");
   if (!call.empty() && call[0] >= '0' && call[0] <= '9') state["call"] = std::atoi(call.c_str());
   return state;

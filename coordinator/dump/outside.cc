@@ -75,11 +75,11 @@ Json DescribedSlot(const shm::ThreadSlot& slot) {
                                                : "closed"}};
 }
 
-// The slots that are in use in a process's memory, by their threads. Holes in it are left alone:
-// what is mapped and read would become memory.
+// The slots that are in use in a process's memory, by their threads. Holes in the memory are left
+// alone: a hole that is mapped and read would become memory.
 void AddSlotsIn(int memory, std::map<pid_t, Json>* slots) {
   constexpr auto kSlot = static_cast<off_t>(sizeof(shm::ThreadSlot));
-  // As bytes: what is copied is another process's, who may write it meanwhile.
+  // As bytes: the slot is another process's, which may write it meanwhile.
   alignas(shm::ThreadSlot) unsigned char bytes[sizeof(shm::ThreadSlot)];
   const auto size = static_cast<off_t>(shm::kProcessMemorySize);
   for (off_t at = 0; at + kSlot <= size;) {

@@ -1,9 +1,9 @@
-// The coordinator's end of the memory that it shares with `tcsim dump` (state_page.h). What it does
-// is noted there as it goes, which costs a few stores; its whole state is written when somebody has
-// asked for it.
+// The coordinator's end of the memory that it shares with `tcsim dump` (state_page.h). The
+// coordinator notes there what it does, as it goes, which costs a few stores. Its whole state is
+// written when another process has asked for it.
 //
-// For the coordinator's thread only. Whoever asks is another process, and whatever it does the run
-// goes on.
+// For the coordinator's thread only. The asker is another process, and the run goes on whatever
+// that process does.
 #pragma once
 
 #include <sys/types.h>
@@ -25,13 +25,13 @@ class StateLink {
   StateLink(const StateLink&) = delete;
   StateLink& operator=(const StateLink&) = delete;
 
-  // From now on others can ask. `folder` is absolute, or empty. Where the memory cannot be made
-  // nobody can, and the run goes on without.
+  // From now on other processes can ask. `folder` is absolute, or empty. Where the memory cannot be
+  // made no process can ask, and the run goes on without.
   void Open(const std::string& folder);
-  // Readable once somebody has asked; -1 where nobody can.
+  // Readable once a process has asked; -1: no process can ask.
   int wake_fd() const { return pipe_.read_end.get(); }
 
-  // From `tsc` on.
+  // The coordinator does that from `tsc` on.
   void Does(Doing what, std::uint64_t tsc) {
     page_->since_tsc.store(tsc, std::memory_order_relaxed);
     page_->doing.store(what, std::memory_order_relaxed);
@@ -43,12 +43,12 @@ class StateLink {
   // The last dispatch.
   std::uint64_t dispatched_tsc() const { return page_->dispatched_tsc.load(); }
 
-  // Empties the pipe. True if somebody has asked and was not answered yet.
+  // Empties the pipe. True if a process has asked and was not answered yet.
   bool TakeAsked();
   void Answer(std::string_view text);
 
  private:
-  StatePage own_;  // until it is opened, and where it cannot be
+  StatePage own_;  // until Open, and where the memory cannot be made
   StatePage* page_ = &own_;
   UniqueFd memory_;
   Pipe pipe_;

@@ -1,8 +1,9 @@
-// What a coordinator and `tcsim dump` share: memory in which the coordinator notes what it does,
-// and in which it leaves its whole state when it is asked for it.
+// The memory that a coordinator and `tcsim dump` share. The coordinator notes there what it does,
+// and leaves its whole state there when it is asked for it.
 //
-// A memfd without a name that the coordinator makes. Who may look into the coordinator's /proc
-// finds it there: the same user, and root. It asks like this:
+// The memory is a memfd without a name that the coordinator makes. A process that may look into the
+// coordinator's /proc finds it there: a process of the same user, or of root. The process asks like
+// this:
 //
 //   the asker                                   the coordinator
 //   locks the memory (flock): one asks at a time
@@ -13,7 +14,7 @@
 //   copies the text, unlocks
 //
 // The coordinator reads nothing from here but `asked`, and trusts it no further than to repeat it.
-// Who writes a field is said above it. Times are the host's TSC where not said otherwise.
+// The comment above a field says who writes it. Times are the host's TSC where not said otherwise.
 #pragma once
 
 #include <atomic>
@@ -23,9 +24,9 @@
 
 namespace tcs {
 
-// What the coordinator does just now.
+// The coordinator's activity just now.
 enum class Doing : std::uint32_t {
-  kPrepares,      // the run has not begun; it may wait for a processor
+  kPrepares,      // the run has not begun; the coordinator may wait for a processor
   kSchedules,     // chooses who acts next, or answers what a thread has asked for
   kIntegrates,    // the dynamics
   kAwaitsThread,  // sleeps until the dispatched thread stops
@@ -40,16 +41,17 @@ struct StatePage {
   static constexpr std::uint32_t kVersion = 1;
   static constexpr std::size_t kMostPath = 4096;
 
-  // The coordinator, before anybody can find the page: it cannot be found before it has its magic.
+  // The coordinator, before anybody can find the page: a page cannot be found before it has its
+  // magic.
   std::atomic<std::uint32_t> magic{0};  // last
   std::uint32_t version = kVersion;
-  std::int32_t coordinator_pid = 0;  // as it knows itself
-  std::int32_t wake_fd = -1;         // the number that the pipe's end for writing has there
-  char folder[kMostPath] = {};       // of the run's results; empty: it has none
+  std::int32_t coordinator_pid = 0;  // its own number for itself
+  std::int32_t wake_fd = -1;         // the pipe's write end, by its number there
+  char folder[kMostPath] = {};       // of the run's results; empty: there is none
 
   // The coordinator, as it goes.
   std::atomic<Doing> doing{Doing::kPrepares};
-  std::atomic<std::int32_t> host_cpu{-1};  // on which its threads take turns; -1: none yet
+  std::atomic<std::int32_t> host_cpu{-1};  // on which the run's threads take turns; -1: none yet
   std::atomic<std::uint64_t> since_tsc{0};
   std::atomic<std::int32_t> dispatched_tid{0};  // the last
   std::atomic<std::uint32_t> unused{0};
@@ -71,7 +73,7 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 static_assert(offsetof(StatePage, doing) == 16 + StatePage::kMostPath);
 static_assert(sizeof(StatePage) == 4176);
 
-// The text begins there. Its pages cost nothing until they are used.
+// The text begins there. The text's pages cost nothing until they are used.
 inline constexpr std::size_t kStateTextAt = 8192;
 inline constexpr std::size_t kMostStateText = std::size_t{32} << 20;
 static_assert(sizeof(StatePage) <= kStateTextAt);

@@ -48,7 +48,7 @@ std::string Seconds(std::int64_t ns) {
   return fmt::format("{:.6f} s", static_cast<double>(ns) * 1e-9);
 }
 
-// Of the host: as long as somebody has waited.
+// A span of the host's time, for which somebody has waited.
 std::string Span(std::int64_t ns) {
   if (ns < 10'000) return fmt::format("{} ns", ns);
   if (ns < 10'000'000) return fmt::format("{:.0f} us", static_cast<double>(ns) * 1e-3);
@@ -153,7 +153,7 @@ class Page {
                        Seconds(Ns(coordinator, "virtual_ns"))));
   }
 
-  // What is known without the coordinator.
+  // The facts that are known without the coordinator.
   void Outside() {
     lines_.Gap();
     lines_.Add(0,

@@ -8,8 +8,8 @@
 namespace tcs {
 
 // `state` has the form that docs/DEBUGGING.md describes: a coordinator's answer, or what was seen
-// from outside. Lines are not longer than `columns` (40 at least), but for words that are. What
-// comes from programs is made visible.
+// from outside. Lines are not longer than `columns` (40 at least), unless a single word is. Text
+// from programs is made visible.
 [[nodiscard]] std::string StateText(const nlohmann::ordered_json& state, std::size_t columns);
 
 }  // namespace tcs

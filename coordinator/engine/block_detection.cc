@@ -14,13 +14,13 @@ namespace tcs {
 
 namespace {
 
-// After so many looks at a thread that the kernel holds it has held it for long.
+// After so many looks at a thread that the kernel holds, the kernel has held it for long.
 constexpr int kLongHeldLooks = 10;
-// For so many looks a world waits for one.
+// For so many looks a world waits for such a thread.
 constexpr int kHeldTurns = 200;
 constexpr int kHeldTurnsFixed = 10'000;
 
-// So long the threads of a process that ends as a whole have to be gone, too.
+// The threads of a process that ends as a whole have to be gone for so many looks, too.
 constexpr int kExitTurns = 20;
 
 }  // namespace
@@ -35,14 +35,15 @@ void BlockDetection::LookAtDetector() {
 }
 
 bool BlockDetection::LetsOthersRun() {
-  if (all_.gate_keeper.says_call()) return false;  // it waits for us
+  if (all_.gate_keeper.says_call()) return false;  // the thread waits for us
   Task& task = *run_.turn.task();
   const char state = ThreadState(task.tid);
   if (run_.is_unprivileged && state == 'R') {
-    // The detector, too, has had a moment of the processor beside it. It is armed again soon.
+    // The detector, too, has had a moment of the processor beside the thread. The detector is armed
+    // again soon.
     run_.turn.held_looks = 0;
-    // Under set costs it is armed again when the thread is looked at, which is found silent by how
-    // often it was looked at after an undisturbed while.
+    // Under set costs the detector is armed again when the coordinator looks at the thread. A
+    // thread is found silent by how often it was looked at after an undisturbed while.
     if (run_.Preempts()) ++run_.turn.false_alarms;
     return false;
   }
@@ -53,14 +54,14 @@ bool BlockDetection::LetsOthersRun() {
     all_.thread_exit.EndAndWake(task, {task.reached});
     return true;
   }
-  // This process may have waited in the kernel itself for what /proc says, and the thread gone on
-  // meanwhile, to its gate or to another call. Then it has said so.
+  // This process itself may have waited in the kernel for what /proc says, and the thread may have
+  // gone on meanwhile, to its gate or to another call. Then the thread has said so.
   if (state == 'S' && all_.reactor.HasMore()) return false;
-  // It has executed another program, has registered meanwhile and sleeps at its first gate, to
-  // which it comes without a notification.
+  // The thread has executed another program, has registered meanwhile and sleeps at its first gate,
+  // to which it comes without a notification.
   if (state == 'S' && task.parked) return true;
   if (state == 'S' && CutsOff(task)) return task.process->violates_protocol;
-  if (state == 't' && all_.debugger.IsOf(*task.process)) return false;  // and everybody with it
+  if (state == 't' && all_.debugger.IsOf(*task.process)) return false;  // and the whole run with it
   const auto in_call = state == 'S' || state == 'D'
                            ? all_.outside.LookIntoCall(task, HostNs(HostClockOf(task)))
                            : OutsideWaits::InCall::kNo;
@@ -76,8 +77,8 @@ bool BlockDetection::LetsOthersRun() {
     }
     return false;
   }
-  // Where others would go on without it, it gets a moment to come back: the world must not pass a
-  // program because of a short system call.
+  // Where others would go on without the thread, it gets a moment to come back: the world must not
+  // pass a program because of a short system call.
   const bool alone = task.process->threads == 1;
   const int turns = !alone                 ? 0
                     : run_.IsFixed()       ? kHeldTurnsFixed
@@ -101,8 +102,9 @@ bool BlockDetection::LetsOthersRun() {
   return true;
 }
 
-// The running thread is at its gate, but its notification has not come: its process has closed the
-// pipe, or put another file in its place. It is told, and says so itself; or else is ended.
+// The running thread is at its gate, but its notification has not come: the thread's process has
+// closed the pipe, or put another file in the pipe's place. The thread is told, and says so itself;
+// or else the process is ended.
 bool BlockDetection::CutsOff(Task& task) {
   if (task.slot < 0 || SlotOf(task).gate.load() != shm::kGateWaiting) return false;
   pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};

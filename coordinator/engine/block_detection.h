@@ -1,4 +1,4 @@
-// The block detector says that the running thread does not run: what that means.
+// The consequences of the block detector's report that the running thread does not run.
 #pragma once
 
 #include "coordinator/engine/engine_part.h"
@@ -10,11 +10,12 @@ class BlockDetection : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  // The running thread does not run. True if others get their turn; otherwise it is waited for: it
-  // is starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
+  // The running thread does not run. True if others get their turn; otherwise the thread is waited
+  // for: it is starting, or in the disk's hands, and its virtual CPU stands still until the thread
+  // goes on.
   bool LetsOthersRun();
 
-  // Without the detector the first thread that waits in the kernel would make everybody wait with
+  // Without the detector the first thread that waits in the kernel would make all others wait with
   // it: the run fails.
   void DetectorEnded();
   void LookAtDetector();

@@ -23,8 +23,9 @@ void ClockPages::GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const
   grant.write_safe_ns = run_.root.WriteSafe(cpu.leaf).ns();
 }
 
-// What has a set cost and was done on the way to its gate by a thread that ran on undispatched,
-// while the kernel held the one whose turn it was (Settle): its next turn begins with that.
+// The set costs of what a thread did on the way to its gate when it ran on undispatched, while the
+// kernel held the thread whose turn it was (Settle). The next turn of the undispatched thread
+// begins with these costs.
 std::int64_t ClockPages::ChargedUndispatched(const Task& task) const {
   if (!run_.IsFixed()) return 0;
   const std::int64_t added_ns =
@@ -50,14 +51,15 @@ void ClockPages::Write(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   GrantWhatIsSafe(cpu, grant);
   all_.host_cpu.SetRates(
       task, {.call = task.process->call_cost, .allocation = task.process->allocation_cost}, grant);
-  // Without levels the shim looks at the beginning of each call whether it may begin.
+  // Without levels the shim looks at the beginning of each call whether the call may begin.
   grant.counts_work = run_.IsFixed() || run_.options.counts_work || run_.is_unprivileged ? 1 : 0;
   if (run_.is_unprivileged && task.trap_id != 0 && task.trap_continues) {
     grant.counts_work |= shm::kBeginsInCall;
   }
   grant.NoteLimits();
-  // One that computes on meanwhile goes to its gate rather than read what is half written: it has
-  // no horizon before it starts. A reading that has begun is repeated, for there is another number.
+  // A thread that computes on meanwhile goes to its gate rather than read what is half written: the
+  // thread has no horizon before it starts. A reading that has begun is repeated, for there is
+  // another dispatch number.
   const std::int64_t added_ns = ChargedUndispatched(task);
   ++task.dispatches;
   page.executed_adjust.store(shm::PackAdjust(task.DispatchWord(), added_ns));
@@ -76,8 +78,9 @@ void ClockPages::Write(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   slot.core = cpu.core;
   const VirtualTime end_of_spin = all_.spins.EndOfSpin(task);
   slot.spin_until_ns = end_of_spin.IsNever() ? shm::kNeverNs : clock.At(end_of_spin).ns();
-  // One that priority has stopped in its midst has had its answer. If a handler of its program's
-  // lies on top of an exchange, what is there is that exchange's, put back.
+  // A thread that priority has stopped in the midst of its turn has had its answer. If a signal
+  // handler of its program lies on top of an exchange, the slot has the content of that exchange,
+  // put back.
   if (!task.parked) return;
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];

@@ -1,4 +1,4 @@
-// What a thread's clock page says of its next turn.
+// The content of a thread's clock page for its next turn.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class ClockPages : public EnginePart {
   using EnginePart::EnginePart;
 
   void Write(Task& task, VirtualTime horizon, VirtualTime idle_until);
-  // What the thread may do without asking.
+  // Grants what the thread may do without asking.
   void GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const;
 
  private:

@@ -15,15 +15,15 @@ namespace tcs {
 
 namespace {
 
-// What a thread shares in memory with others of its process they see so much too early at most.
+// Other threads of the process see a thread's changes of shared memory so much too early at most.
 constexpr VirtualDuration kMostAhead = VirtualDuration::Milliseconds(1);
-// The way there and back was worth while for so much, and for so much it was not.
+// For kLong of computed time the way there and back was worth while, and for kShort it was not.
 constexpr VirtualDuration kLong = VirtualDuration::Milliseconds(3),
                           kShort = VirtualDuration::Milliseconds(1);
 constexpr int kMostComputes = 256;
 // Between two looks, while a thread is waited for, at what the kernel has to say, and at its state.
 constexpr std::int64_t kLookNs = 3'000, kStateLookNs = 200'000;
-// For less it is not asked how far it has come.
+// For less uncertain time the coordinator does not ask how far a thread has come.
 constexpr VirtualDuration kWorthAsking = VirtualDuration::Microseconds(20);
 
 }  // namespace
@@ -51,7 +51,8 @@ bool ComputingAhead::MaySend(const Task& task) const {
       task.is_brief || task.executes || task.is_adopted || task.spins || task.is_deliverer ||
       task.notified_early || task.early_trap.has_value() || process.violates_protocol ||
       process.stopped || process.stays_home || stays_home_ || parts_.run.IsInGrace();
-  // Stopped in the midst of a call, it would do what it is about to do to others in no turn.
+  // A thread that was stopped in the midst of a call would do to others, in no turn, what it is
+  // about to do.
   const bool is_in_call = SlotOf(task).open_calls.load() != 0;
   return is_ordinary && !is_busy_otherwise && !is_in_call;
 }
@@ -66,10 +67,10 @@ void ComputingAhead::SendIfItComputes(Task& task) {
   });
   if (cpu == cpus_.end() || ThreadState(task.tid) != 'R') return;
   const std::int64_t cpu_ns = HostClockOf(task);
-  if (cpu_ns < 0) return;  // it is about to end
-  // It computed that here.
+  if (cpu_ns < 0) return;  // the thread is about to end
+  // The thread computed that time here.
   parts_.run.ChargeAsDebt(task, task.metered.ChargeAt(cpu_ns) - task.charged);
-  // To go there and back again takes its time, too.
+  // The way there and back takes its time, too.
   const VirtualDuration most = MostAhead();
   if (task.debt > most / 2) return;
   ClockGrant& grant = task.grant;
@@ -104,7 +105,7 @@ void ComputingAhead::HasSpoken(Task& task) {
   if (computed < kShort) task.ahead_after = std::min(2 * task.ahead_after, kMostComputes);
 }
 
-// It stands still, so that its CPU clock is right.
+// The thread stands still, so that its CPU clock is right.
 void ComputingAhead::BringHome(Task& task) {
   CpuOf(task).BringHome();
   if (const std::int64_t cpu_ns = HostClockOf(task); cpu_ns >= 0) {
@@ -144,18 +145,18 @@ void ComputingAhead::Forget(const Task& task) {
   std::erase(owing_, &task);
 }
 
-// What it is to be charged in all.
+// `charged`: the thread's charge in all.
 void ComputingAhead::Charge(Task& task, VirtualDuration charged) {
   parts_.run.report.ahead_ns += parts_.run.ChargeAsDebt(task, charged - task.charged).ns();
 }
 
-// What others may have taken of its processor is not charged: the world would go past what the
-// thread does next.
+// Time that others may have taken of the thread's processor is not charged: the world would go past
+// what the thread does next.
 void ComputingAhead::ChargeAhead(Task& task) {
   Charge(task, task.ahead_from + task.metered.OnRobot(HostNs(CpuOf(task).Computed())));
 }
 
-// What it may have computed besides.
+// The time that the thread may have computed besides.
 VirtualDuration ComputingAhead::Uncertain(const Task& task) {
   const std::int64_t host_ns = CpuOf(task).MayHaveComputedBy(HostTsc());
   return task.ahead_from + task.metered.OnRobot(HostNs(host_ns)) - task.charged;
@@ -186,7 +187,7 @@ void ComputingAhead::Look() {
   for (Task* task : owing_) {
     if (!task->is_ahead) continue;
     ChargeAhead(*task);
-    // Others wait for it alone.
+    // The others wait for this thread alone.
     const bool is_least = parts_.run.root.First() == task->cpu->leaf;
     if (is_least && Uncertain(*task) >= kWorthAsking) AskHowFar(*task);
     parts_.waker.Refresh(*task->process->robot);
@@ -195,7 +196,7 @@ void ComputingAhead::Look() {
 
 bool ComputingAhead::TakeTurn(Task& task, VirtualTime horizon) {
   if (!task.owes_ahead) return false;
-  parts_.run.turn.recorded_tsc = HostTsc();  // what it pays takes no real time before its turn
+  parts_.run.turn.recorded_tsc = HostTsc();  // the paid debt takes no real time before the turn
   if (task.is_ahead) {
     Await(task, horizon);
   } else if (task.debt <= VirtualDuration()) {
@@ -203,15 +204,15 @@ bool ComputingAhead::TakeTurn(Task& task, VirtualTime horizon) {
     std::erase(owing_, &task);
     return false;
   }
-  // Whoever was woken meanwhile is not to be left behind further than the drift bound.
+  // A thread that was woken meanwhile is not to be left behind further than the drift bound.
   Pay(task, std::min(horizon, parts_.run.root.Horizon(task.cpu->leaf)));
   if (!task.is_ahead) SendIfItComputes(task);
   ++task.process->changes.turns;
   return true;
 }
 
-// Until the thread has computed up to the horizon, has said something, or others have something to
-// do.
+// Waits until the thread has computed up to the horizon or has said something, or others have
+// something to do.
 void ComputingAhead::Await(Task& task, VirtualTime horizon) {
   RunState& run = parts_.run;
   FurtherCpu& cpu = CpuOf(task);
@@ -225,14 +226,14 @@ void ComputingAhead::Await(Task& task, VirtualTime horizon) {
     ChargeAhead(task);
     const VirtualDuration to_go = horizon - task.cpu->progress;
     if (task.debt < to_go && task.debt + Uncertain(task) >= to_go) AskHowFar(task);
-    // One that rests goes on as soon as it has paid.
+    // A thread that rests goes on as soon as it has paid.
     if (task.debt >= to_go || cpu.Rests()) break;
     const std::uint64_t now_tsc = HostTsc();
     const bool looks = now_tsc >= looks_tsc;
     if (looks) looks_tsc = now_tsc + parts_.clock.TicksIn(kStateLookNs);
     const bool is_starved = cpu.IsStarvedBy(now_tsc);
     if (is_starved) cpu.LeaveToOthers(now_tsc);
-    // The kernel may hold it.
+    // The kernel may hold the thread.
     if (is_starved || cpu.HasLeft() || (looks && ThreadState(task.tid) != 'R')) {
       BringHome(task);
       break;
@@ -251,7 +252,7 @@ void ComputingAhead::Pay(Task& task, VirtualTime horizon) {
   const VirtualTime end = start + paid;
   task.debt -= paid;
   task.cpu->ComeTo(end);
-  // It may have waited since then, and have been woken where others have come further.
+  // The thread may have waited since then, and have been woken where others have come further.
   task.ComeTo(std::max(task.reached, end));
   parts_.run.latest = end;
   const ProgramClock& clock = task.process->clock;

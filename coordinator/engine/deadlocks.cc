@@ -17,7 +17,7 @@ std::string NameOf(const Task& task) {
                          : task.process->name;
 }
 
-// Whose lock the thread waits for without a timeout; null: nobody's that is known.
+// The thread whose lock this thread waits for without a timeout; null: none that is known.
 const Task* AwaitedBy(const Task& task, const RunState& run, const FutexTable& futexes) {
   const bool waits = task.wait.has_value() && task.wait->deadline.IsNever();
   return waits ? OwnerOfAwaitedLock(task, run, futexes) : nullptr;

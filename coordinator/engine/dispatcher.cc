@@ -26,7 +26,8 @@ namespace {
 // Enough for the kernel to carry out a call that does not wait.
 constexpr HostDuration kBrief = HostDuration::Microseconds(20);
 
-// What it computes after the creation of another thread is the host's, and the two share memory.
+// The host decides how far a thread computes after it has created another one, and the two share
+// memory.
 constexpr HostDuration kBriefCreation = HostDuration::Microseconds(5);
 
 // Where the kernel does not tell whether a thread is still in its call.
@@ -43,15 +44,15 @@ bool MakesThread(const Task& task) {
 }
 
 // For how long the coordinator sleeps before its next look at a thread that is to make one call. A
-// thread that does not come to it after some looks waits for others, which its looks keep from the
-// processor.
+// thread that does not come to that call after some looks waits for others, which these looks keep
+// from the processor.
 HostDuration BriefSleep(const Task& task, int looks) {
   constexpr int kEager = 8, kMostDoublings = 7;
   const int doublings = std::clamp(looks - kEager, 0, kMostDoublings);
   return (MakesThread(task) ? kBriefCreation : kBrief) * (std::int64_t{1} << doublings);
 }
 
-// What the thread may compute once it is back from the kernel.
+// The computing time that the thread has once it is back from the kernel.
 HostDuration BriefTime(const Task& task) { return MakesThread(task) ? HostDuration() : kBrief / 2; }
 
 }  // namespace
@@ -70,8 +71,8 @@ void Dispatcher::AnswerCall(Task& task) {
   task.WasAnswered(task.trap_continues ? all_.guard.Continue(task) : answer());
 }
 
-// Who may run is changed and a gate opened: with the coordinator blocking next, which is when the
-// thread starts, this is the context switch.
+// Changes which thread may run, and opens a gate: with the coordinator blocking next, which is when
+// the thread starts, this is the context switch.
 void Dispatcher::Resume(Task& task) {
   const bool is_at_gate = task.parked;
   all_.host_cpu.Dispatch(task);
@@ -87,7 +88,7 @@ void Dispatcher::Resume(Task& task) {
   } else if (task.slot >= 0 && is_at_gate) {
     all_.gate_keeper.OpenGate(task);
   }
-  // What it was sent before, it handles first of all.
+  // A signal that the thread was sent before is the first thing that it handles.
   if (!run_.is_unprivileged) task.has_signal = false;
   ++run_.report.switches;
   if (!starts_at_once) all_.host_cpu.Start(task, task.spins);
@@ -102,7 +103,7 @@ void Dispatcher::GoOnBesideWoken() {
   run_.turn.LimitTo(allowed);
   ClockGrant& grant = run_.turn.task()->grant;
   grant.horizon_ns = OwnHorizon().ns();
-  grant.idle_until_ns = 0;  // it asks
+  grant.idle_until_ns = 0;  // the thread asks
   all_.clock_pages.GrantWhatIsSafe(cpu, grant);
   grant.NoteLimits();
   grant.WriteTo(page);
@@ -120,7 +121,8 @@ ProgramTime Dispatcher::OwnHorizon() const {
 }
 
 // The thread has a turn for the call that it has made, from when it was there to make it. True once
-// it must have run, and come back from the kernel: real time that has passed may be the host's.
+// the thread must have run, and come back from the kernel: real time that has passed may be the
+// host's.
 bool Dispatcher::HasMadeCall(Task& task, int* turns) {
   if (task.brief_id == 0 && HostNs(HostClockOf(task)) >= task.brief_until &&
       (ThreadState(task.tid) != 'R' || IsInUserMode(task.tid) || ++*turns > kMostBriefTurns)) {
@@ -134,7 +136,7 @@ bool Dispatcher::HasMadeCall(Task& task, int* turns) {
   return false;
 }
 
-// The thread has not registered in so many turns. True if it is not waited for any more.
+// The thread has not registered in so many turns. True if the thread is not waited for any more.
 bool Dispatcher::GivesUpStart(Task& task, int turns) {
   if (UnregisteredThreads::NeverRegisters(task)) {
     all_.unregistered.Lower(task.tid);
@@ -154,7 +156,7 @@ void Dispatcher::AwaitStop(Task& task) {
   int starting_turns = 0, brief_turns = 0, brief_looks = 0;
   StarvationWatch starvation(all_.host_cpu.stop_tsc(), all_.clock.rate().ticks_per_ns);
   for (bool first = true;; first = false) {
-    // What it has made of its clock meanwhile must not be reckoned with.
+    // A clock that the thread has changed meanwhile must not be reckoned with.
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
     if (!first) all_.host_cpu.Continue(task);
     if (all_.gate_keeper.TakesOpening()) all_.gate_keeper.OpenGate(task);
@@ -195,7 +197,7 @@ void Dispatcher::AwaitStop(Task& task) {
 }
 
 // Under set costs a thread that spins on what others write to memory would spin for ever, for
-// computing takes no time. From now on it does, in this client (fixed_meter.h).
+// computing takes no time. From now on computing takes time in this client (fixed_meter.h).
 void Dispatcher::ChargeSilence(Task& task) {
   Process& client = *task.process->client;
   client.pays_for_silence = task.metered.pays_for_silence = true;
@@ -206,7 +208,7 @@ void Dispatcher::ChargeSilence(Task& task) {
       client.name, Spoken(PatienceOf(run_.scenario).silent.ns())));
 }
 
-// What it has said without being dispatched. True if that is all for now.
+// Answers what the thread has said without being dispatched. True if that is all for now.
 bool Dispatcher::AnswerEarly(Task& task) {
   if (!task.notified_early && !task.early_trap.has_value()) return false;
   task.parked = true;
@@ -229,9 +231,10 @@ bool Dispatcher::AnswerEarly(Task& task) {
 void Dispatcher::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until) {
   Beat();
   task.is_brief = task.after_call != AfterCall::kNone && !task.brief_done;
-  // How far it comes in so short a time is the host's: under set costs no further than the call.
+  // The host decides how far the thread comes in so short a time: under set costs no further than
+  // the call.
   if (task.is_brief && run_.IsFixed()) horizon = task.cpu->progress;
-  // Others may have something to do as soon as the kernel has carried its call out.
+  // Other threads may have something to do as soon as the kernel has carried out the thread's call.
   if (task.is_brief || !task.creations.empty()) idle_until = {};
   run_.turn.Begin(task, horizon);
   all_.gate_keeper.TurnBegins();
@@ -282,13 +285,14 @@ void Dispatcher::TellOthersOf(Task& task, EventTime call, bool looks_again) {
   if (!run_.turn.notified && task.slot >= 0) LookForUntoldSignals(task, stop);
 }
 
-// It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
-// the level of its last dispatch, beside whoever is next.
+// The thread cannot say that it has sent a signal before its next dispatch; the receiver must not
+// run, at the level of its last dispatch, beside the thread that is next.
 void Dispatcher::LookForUntoldSignals(const Task& task, EventTime stop) {
   const std::uint32_t sends = SlotOf(task).signals.load();
   if (sends == 0) return;
   const bool by_library = sends == shm::kSendsByLibrary;
-  // Not yet: here is the call. Once that has been here, another one is a handler's.
+  // The signal is not sent yet: here is the call. Once that call has been here, another one is a
+  // handler's.
   const bool calls = run_.turn.trapped.has_value() && SendsSignal(*run_.turn.trapped);
   if (by_library && calls && task.sending.number == 0) return;
   all_.signals.Sent(by_library ? SentBy(run_, task, task.sending) : SentSignal(), stop);
@@ -298,7 +302,7 @@ void Dispatcher::Answer(Task& task) {
   if (task.state == TaskState::kDead || !run_.turn.HasSpoken()) return;
   const EventTime when{task.reached};
   task.parked = true;
-  // It was found held by the kernel, and has come back at the same instant.
+  // The thread was found held by the kernel, and has come back at the same instant.
   if (task.state == TaskState::kUnseen) all_.waker.SetState(task, TaskState::kReady);
   bool finds_more = false;
   if (run_.turn.notified) {
@@ -307,7 +311,7 @@ void Dispatcher::Answer(Task& task) {
   } else {
     finds_more = all_.trapped.Handle(task, *run_.turn.trapped);
   }
-  // What is there already ends the wait here and now.
+  // An event that is there already ends the wait here and now.
   if (finds_more) all_.event_pump.Poll(EventPump::kNoWait, when);
 }
 

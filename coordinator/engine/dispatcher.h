@@ -1,4 +1,4 @@
-// One turn of a thread, from its beginning to the answer to what the thread has said. While it
+// A turn of a thread, from its beginning to the answer to what the thread has said. While the turn
 // lasts RunState::turn says what is known of it.
 #pragma once
 
@@ -12,22 +12,22 @@ class Dispatcher : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  // Runs the thread up to its horizon, charges it for what it did, and answers it. `idle_until`: it
-  // may sleep that far without asking.
+  // Runs the thread up to its horizon, charges it for what it did, and answers it. `idle_until`:
+  // the thread may sleep that far without asking.
   void Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until);
 
-  // The running thread has woken one of another computer, which does not need its core. It goes on,
-  // as far as that one now allows.
+  // The running thread has woken a thread of another computer, which does not need its core. The
+  // running thread goes on, as far as the woken one now allows.
   void GoOnBesideWoken();
   void AnswerCall(Task& task);
 
-  // What turns have in common, wherever the thread has them (early_turns.h).
+  // The steps that turns have in common, wherever the thread has them (early_turns.h).
   static void NoteTurnBegins(Task& task);
   void EndTurn(Task& task);
-  // Who is concerned by how the turn has passed, whatever its thread wants now. Its calls were made
-  // at `call`.
+  // Tells all who are concerned by how the turn has passed, whatever its thread wants now. The
+  // thread's calls were made at `call`.
   void TellOthersOf(Task& task, EventTime call, bool looks_again);
-  // What the thread has said at the end of its turn.
+  // Answers what the thread has said at the end of its turn.
   void Answer(Task& task);
 
  private:

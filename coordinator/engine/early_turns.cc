@@ -15,7 +15,7 @@ namespace tcs {
 
 namespace {
 
-// Shorter ones are not worth while.
+// Shorter turns are not worth while.
 constexpr VirtualDuration kLeastTurn = VirtualDuration::Microseconds(20);
 
 }  // namespace
@@ -37,7 +37,7 @@ void EarlyTurns::Begin() {
   }
 }
 
-// The virtual CPU comes to its next turn, which it would do later, too, and has it.
+// The virtual CPU comes to its next turn, as it would do later, too, and has that turn.
 void EarlyTurns::BeginOn(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
   if (!TurnsBeside::MayBegin(robot)) return;
@@ -61,7 +61,7 @@ void EarlyTurns::BeginOn(VirtualCpu& cpu) {
   if (all_.beside.IsTaken()) return;
   task.ComeTo(at);
   all_.clock_pages.Write(task, horizon, std::min(idle_until, horizon));
-  // Whatever others may see or have done has its order.
+  // Everything that others may see or have done has its order.
   task.grant.read_safe_ns = task.grant.write_safe_ns = -1;
   task.grant.NoteLimits();
   task.grant.WriteTo(SlotOf(task).clock);
@@ -83,7 +83,8 @@ void EarlyTurns::Take(Task& task) {
     run_.turn.trapped = std::exchange(task.early_trap, std::nullopt);
     run_.turn.timed_out = !run_.turn.trapped.has_value();
     all_.host_cpu.Woke();
-    // Its clock has counted on meanwhile. Of a thread that has died its process's clock tells.
+    // The thread's clock has counted on meanwhile. The clock of the process tells for a thread that
+    // has died.
     const Process& process = *task.process;
     all_.host_cpu.Check(task, task.died_beside && process.threads == 1
                                   ? [pid = process.pid] { return ProcessCpuClockNs(pid); }
@@ -104,7 +105,7 @@ void EarlyTurns::Take(Task& task) {
   }
   if (const auto& trapped = run_.turn.trapped;
       trapped && (IsExecution(*trapped) || IsEnd(*trapped))) {
-    // The kernel carries that out in the next turn.
+    // The kernel carries out that call in the next turn.
     task.executes = IsExecution(*trapped);
     task.trap_listener = trapped->listener;
     task.trap_id = trapped->id;

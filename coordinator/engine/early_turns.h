@@ -10,9 +10,10 @@ class EarlyTurns : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  // Before the first virtual CPU acts: those that act soon after it, and need not wait for it.
+  // Before the first virtual CPU acts: begins turns of the virtual CPUs that act soon after it, and
+  // need not wait for it.
   void Begin();
-  // The turn has its order: it ends now, at the time at which its thread stopped.
+  // The turn has its order: the turn ends now, at the time at which its thread stopped.
   void Take(Task& task);
 
  private:

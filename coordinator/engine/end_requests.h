@@ -9,12 +9,12 @@ namespace tcs {
 
 class EndRequests {
  public:
-  // They are blocked, and kept in a descriptor, which the reactor has. Before there are threads,
-  // which have the mask of whoever makes them.
+  // The signals are blocked, and kept in a descriptor, which the reactor has. To be called before
+  // there are threads, which inherit the signal mask of the thread that creates them.
   void Open(Reactor& reactor);
   bool IsPending() const;
-  // The next one counts for the run. False if there is none, or it is for the program that has the
-  // terminal.
+  // The next signal counts for the run. False if there is none, or the signal is for the program
+  // that has the terminal.
   bool Take(RunState& run);
 
  private:

@@ -23,7 +23,7 @@ RunReport Engine::Run() {
   all_.clock.Start();
   all_.records.StartAt(all_.clock);
   try {
-    // While only the world goes on, nobody else looks.
+    // While only the world goes on, no other part looks for these signals.
     constexpr int kStepsBetweenLooksAtSignals = 64;
     for (int step = 1; run.report.error.empty() && !run.stop.asked(); ++step) {
       if (!all_.loop.Step()) break;
@@ -39,7 +39,7 @@ RunReport Engine::Run() {
   }
   all_.state_link.Does(Doing::kWrites, HostTsc());
   all_.reporter.Conclude(all_.loop.reached_end() ? run.end : all_.world_leaf.FurthestOfRun());
-  // First: what clients do at their end is no part of the run.
+  // The records are closed first, because what clients do at their end is no part of the run.
   const std::string& folder = run.options.output_directory;
   for (const std::string& error :
        {all_.records.Close(), all_.datagram_log.Close(), all_.dds.records().Close(),
@@ -51,7 +51,7 @@ RunReport Engine::Run() {
     all_.run_end.EndClients();
     all_.run_end.Shutdown();
   }
-  // What clients print at their end is theirs to be measured by, too.
+  // Clients are also measured by what they print at their end.
   const std::string error = all_.records.CloseMetrics(RobotTime(report.virtual_ns));
   if (report.error.empty()) report.error = error;
   report.metrics = all_.records.Metrics();

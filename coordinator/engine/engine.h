@@ -1,5 +1,5 @@
-// The engine: a run from its first moment to its report. Its parts are named in wiring.h; the loop
-// (loop.h) lets them act.
+// The engine: a run from its first moment to its report. The engine's parts are named in wiring.h;
+// the loop (loop.h) lets them act.
 #pragma once
 
 #include "coordinator/engine/wiring.h"

@@ -1,5 +1,5 @@
-// What the engine's parts have in common: they are made once, by the wiring, and reach each other
-// through it. What a part keeps for itself is in the part.
+// The common base of the engine's parts. The parts are made once, by the wiring, and reach each
+// other through it. State that a part keeps for itself is in the part.
 //
 // For the coordinator's thread only, as are all of the engine's parts.
 #pragma once

@@ -11,11 +11,11 @@ namespace tcs {
 
 namespace {
 
-constexpr int kMostFullTurns = 1000;  // whoever floods its pipe must not hold up everybody
+constexpr int kMostFullTurns = 1000;  // a process that floods its pipe must not hold up all others
 
 // How often a thread that the kernel holds is looked at.
 constexpr HostDuration kHeldTurn = HostDuration::Microseconds(100);
-// Where another one has its level.
+// The same where another thread has the level of that one.
 constexpr HostDuration kLentTurn = HostDuration::Microseconds(20);
 
 // The detector's false alarms make it wait twice as long each time, up to 2^this times kHeldTurn.
@@ -60,8 +60,9 @@ PollOutcome EventPump::LookOnce(HostDuration timeout, EventTime when, bool is_re
     if (held || (rearms && is_cut_short)) {
       all_.host_cpu.active().TakeBack();
       if (held && run_.is_unprivileged) {
-        // Others of the host may keep the processor from the detector for seconds. That the kernel
-        // has the thread it has said once; whether it still has, /proc says, too.
+        // Other threads of the host may keep the processor from the detector for seconds. The
+        // detector has said once that the kernel has the thread; whether the kernel still has it,
+        // /proc says, too.
         ++run_.turn.held_looks;
         return {.stops_running = all_.block_detection.LetsOthersRun()};
       }
@@ -93,7 +94,8 @@ bool EventPump::PollWhileRunning(Task& task, HostDuration timeout) {
   return Poll(timeout, {}).stops_running;
 }
 
-// Those whose descriptors have become ready, all at once: one event may be for one of them only.
+// Wakes the threads whose descriptors have become ready, all at once: an event may be for one of
+// these threads only.
 PollOutcome EventPump::WakeReadyAwaiters(EventTime when) {
   std::vector<Task*> awaiters = std::exchange(ready_awaiters_, {});
   // Something else may have ended the wait meanwhile.

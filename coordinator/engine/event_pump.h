@@ -1,5 +1,5 @@
-// What the kernel has to say is taken, all that there is at an instant, and handled as something of
-// that instant.
+// Takes the events that the kernel has to report, all that there are at an instant, and handles
+// them as events of that instant.
 #pragma once
 
 #include <vector>
@@ -15,17 +15,17 @@ class EventPump : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  static constexpr HostDuration kNoWait{};  // what is there is looked at, and nothing waited for
+  static constexpr HostDuration kNoWait{};  // looks at what is there, and waits for nothing
 
-  // All that there is at this instant: were the rest found later, it would have happened later. A
-  // negative timeout: none. What is found happens at `when`, or at the time that the running
-  // thread has come to.
+  // Handles all events that there are at this instant: were the rest found later, it would have
+  // happened later. A negative timeout: none. The events happen at `when`, or at the time that the
+  // running thread has come to.
   PollOutcome Poll(HostDuration timeout, EventTime when);
-  // The same for the running thread, in turns while somebody waits for signals. True if it has to
-  // stop.
+  // The same for the running thread, in turns while a thread waits for signals. True if the running
+  // thread has to stop.
   bool PollWhileRunning(Task& task, HostDuration timeout);
-  // One look. `is_rest`: a further look at an instant, at which the running thread stands as it was
-  // found.
+  // A single look. `is_rest`: a further look at an instant, at which the running thread stands as
+  // it was found.
   PollOutcome LookOnce(HostDuration timeout, EventTime when, bool is_rest);
 
   // A descriptor that the thread waits for has become ready: all such threads are woken together.

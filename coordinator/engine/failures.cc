@@ -19,7 +19,7 @@ std::string NameOfSignal(int signal) {
   return name != nullptr ? fmt::format("SIG{}", name) : fmt::format("signal {}", signal);
 }
 
-// What the client said last, and where the rest stands.
+// The client's last words, and where the rest stands.
 std::string LastWordsOf(const std::string& client, const std::string& folder,
                         const std::string& shown) {
   std::string base = client;

@@ -19,14 +19,15 @@ namespace {
 // The processor time that a thread has to handle the signal.
 constexpr HostDuration kMostWayToGate = HostDuration::Microseconds(100);
 
-// The same where a handler begins that ends a wait: it may be the first one since a fork, and what
-// it touches on its way be copied page by page, or be in nobody's cache any more.
+// The same where a signal handler begins that ends a wait: the handler may be the first one since a
+// fork, and the memory that it touches on its way be copied page by page, or be in no cache any
+// more.
 constexpr HostDuration kMostWayFromWait = HostDuration::Milliseconds(1);
 
 // The real time for that: on a busy host others may go first for many slices.
 constexpr HostDuration kMostStarved = HostDuration::Seconds(5);
 constexpr HostDuration kGateLook = HostDuration::Microseconds(500);
-// At one that is there soon.
+// Between looks at a thread that is at its gate soon.
 constexpr HostDuration kShortGateLook = HostDuration::Microseconds(50);
 constexpr int kMostAtOnce = 1000;  // events of one instant
 
@@ -42,7 +43,8 @@ bool SendsSignal(const Task& task) {
          SendsSignal(task.trapped_call);
 }
 
-// It is not dispatched, and has stopped neither at its gate nor in a call that was received.
+// The thread is not dispatched, and has stopped neither at its gate nor in a call that was
+// received.
 bool MayCompute(const Task& task) {
   const bool has_stopped = task.parked || task.trap_id != 0 || task.early_trap.has_value() ||
                            task.notified_early || task.is_put_off || task.is_call_put_off;
@@ -50,10 +52,10 @@ bool MayCompute(const Task& task) {
          !task.executes && !task.process->violates_protocol;
 }
 
-// It waits, as it has said, and is awake: it is on its way to sleep at its gate, or a handler that
-// it runs will end the wait. Or the kernel has ended the trapped call in which it waits, though
-// nobody has answered that: for a signal, whose handler it runs. Later kernels do so only for
-// signals that end the process (kHoldsSignals in os/trap.cc).
+// The thread waits, as it has said, and is awake: it is on its way to sleep at its gate, or a
+// handler that it runs will end the wait. Or the kernel has ended the trapped call in which the
+// thread waits, though nobody has answered that call: for a signal, whose handler the thread runs.
+// Later kernels do so only for signals that end the process (kHoldsSignals in os/trap.cc).
 bool IsAwakeInWait(const Task& task) {
   if (task.state != TaskState::kWaiting || task.slot < 0 || task.process->violates_protocol)
     return false;
@@ -92,10 +94,10 @@ void GateKeeper::OpenGate(Task& task) {
   HostCpu::OpenGate(SlotOf(task));
 }
 
-// A thread may begin to say that a handler ends its wait, and be dispatched before it has said it.
-// It does not stop for that, and goes on to what it says next: what it has noted may be that, or
-// what the handler interrupted. The pipe keeps the order, so that the gate was open already if
-// nothing else has been said since that opened.
+// A thread may begin to say that a handler ends its wait, and be dispatched before it has said so.
+// The thread does not stop for that, and goes on to what it says next: its note may be about that,
+// or about what the handler interrupted. The pipe keeps the order, so that the gate was open
+// already if the thread has said nothing else since the gate opened.
 bool GateKeeper::IsSaidBeforeTurn(Task& task, const shm::PipeMessage& message) {
   if (message.ends_wait == 0) task.is_let_go = false;
   return task.is_let_go;
@@ -112,7 +114,7 @@ PollOutcome GateKeeper::EndCall(PollOutcome found) {
   if (found.stops_running) {
     Task& task = *run_.turn.task();
     task.parked = true;
-    // It was found held by the kernel, and has come back at the same instant.
+    // The thread was found held by the kernel, and has come back at the same instant.
     if (task.state == TaskState::kUnseen) all_.waker.SetState(task, TaskState::kReady);
   } else {
     opens_gate_ = true;
@@ -120,11 +122,13 @@ PollOutcome GateKeeper::EndCall(PollOutcome found) {
   return found;
 }
 
-// The running thread is to stop, and has not said anything: it computes. It is told to go to its
-// gate, and waited for, so that nobody runs beside it. Where it does not come (its program blocks
-// the signal, or the kernel has it) it computes on, and owes what it computes.
+// The running thread is to stop, and has not said anything: it computes. The thread is told to go
+// to its gate, and waited for, so that no other thread runs beside it. Where the thread does not
+// come (its program blocks the signal, or the kernel has the thread) it computes on, and owes what
+// it computes.
 void GateKeeper::BringToGate(Task& task) {
-  // Where computing costs nothing, it may compute on, unless it pays for that (fixed_meter.h).
+  // Where computing costs nothing, the thread may compute on, unless it pays for that
+  // (fixed_meter.h).
   const bool is_charged = run_.Preempts() || (run_.is_unprivileged &&
                                               task.metered.pays_for_silence && run_.turn.timed_out);
   const bool computes = is_charged && task.slot >= 0 && Waker::IsRunnable(task) && !task.parked &&
@@ -142,11 +146,11 @@ void GateKeeper::BringToGate(Task& task) {
   }
 }
 
-// The kernel keeps a signal from a thread in a trapped call once that has been received. Before,
-// the signal's handler would run at once, in the middle of another thread's turn, and the call be
-// made again. So nobody may be about to make one when a thread goes on that sends a signal: those
-// that compute are told to go to their gates, which restarts what they have just called, and are
-// waited for as in BringToGate.
+// The kernel keeps a signal from a thread in a trapped call once that call has been received.
+// Before, the signal's handler would run at once, in the middle of another thread's turn, and the
+// call be made again. So no thread may be about to make a call when a thread goes on that sends a
+// signal: threads that compute are told to go to their gates, which restarts what they have just
+// called, and are waited for as in BringToGate.
 PollOutcome GateKeeper::BringOthersToGates(const Task& sender, EventTime when) {
   if (!SendsSignal(sender)) return {};
   const auto computes = [&sender](const Task& task) {
@@ -164,17 +168,18 @@ PollOutcome GateKeeper::BringOthersToGates(const Task& sender, EventTime when) {
 }
 
 // Before and after a signal is sent. A thread that has said that it waits, and has yet to fall
-// asleep, may run the handler at once, as may one in a trapped call on kernels that end such calls
-// for signals: then no signal is there for it any more, and only the thread itself can tell that
-// its wait is over. The world must not go on past that.
+// asleep, may run the handler at once, as may a thread in a trapped call on kernels that end such
+// calls for signals: then no signal is there for the thread any more, and only the thread itself
+// can tell that its wait is over. The world must not go on past that.
 PollOutcome GateKeeper::AwaitSleepAtGates(EventTime when) {
   return AwaitThreads(when, {kShortGateLook, kMostWayFromWait}, IsAwakeInWait, [](Task&) {});
 }
 
-// A thread that was looked at for a signal, and had none, may be running the handler already.
-// Whoever has sent the signal (a program by the shim or past it, the kernel because a child has
-// ended), nobody has a turn before that is known, which might be one long sleep by its own clock
-// alone, and no time is jumped over. Who has told it sleeps, and has yet to be heard.
+// A thread that was looked at for a signal, and had none, may be running the handler already. No
+// thread has a turn before that is known, because the turn might be one long sleep by the thread's
+// own clock alone; and no time is jumped over. The sender of the signal makes no difference: a
+// program by the shim or past it, or the kernel because a child has ended. A thread that has told
+// of its handler sleeps, and has yet to be heard.
 void GateKeeper::AwaitHandlers() {
   while (const std::optional<EventTime> look = all_.signal_wakes.TakeLook()) {
     if (!run_.is_unprivileged) return;
@@ -183,7 +188,7 @@ void GateKeeper::AwaitHandlers() {
   }
 }
 
-// All of that happens at the moment. `at_first` is done with each once.
+// All events that come meanwhile happen at `when`. `at_first` is done with each thread once.
 PollOutcome GateKeeper::AwaitThreads(EventTime when, const WayToGate& way,
                                      const std::function<bool(const Task&)>& is_awaited,
                                      const std::function<void(Task&)>& at_first) {
@@ -205,9 +210,9 @@ PollOutcome GateKeeper::AwaitThreads(EventTime when, const WayToGate& way,
   return found;
 }
 
-// What the thread has computed since its last turn ended, or while it was taken to be stopped, is a
-// debt like what it computes beyond its horizon. Levels let nobody compute then, but while the run
-// is held back.
+// The time that the thread has computed since its last turn ended, or while it was taken to be
+// stopped, is a debt like time that it computes beyond its horizon. Levels let no thread compute
+// then, but while the run is held back.
 void GateKeeper::ChargeUndispatched(Task& task) {
   const bool may_have_computed = run_.Preempts() || (all_.pacing.IsOn() && !run_.IsFixed());
   if (!may_have_computed || task.slot < 0) return;

@@ -13,7 +13,8 @@ class Horizons : public EnginePart {
   // `idle_until`: the thread may sleep that far without asking, for nothing else happens on its
   // virtual CPU before.
   VirtualTime Of(Task& task, VirtualTime* idle_until);
-  // Under --sync callback the world waits so long for a program that computes, and still so long.
+  // Under --sync callback: how long the world waits for a program that computes, and how long it
+  // still waits.
   VirtualDuration MostHeld() const;
   VirtualDuration LeftToHold(const Task& task) const;
 };

@@ -25,7 +25,7 @@ void IdleTime::WaitOutside() {
   all_.event_pump.Poll(unseen ? kUnseenPoll : kOutsidePoll, {run_.latest});
 }
 
-// Nobody runs: what comes in meanwhile happens now.
+// No thread runs: an event that comes in meanwhile happens now.
 void IdleTime::WaitForDebugger() {
   Beat();
   all_.event_pump.Poll(kDebuggerPoll, {run_.latest});
@@ -64,8 +64,8 @@ int IdleTime::Living() const {
   return living;
 }
 
-// Nobody acts by itself any more, and no world goes on: what is left of the run is idle time, which
-// is jumped over. But those that the kernel has, or that compute without a call, may still come
+// No thread acts by itself any more, and no world goes on: the rest of the run is idle time, which
+// is jumped over. But threads that the kernel has, or that compute without a call, may still come
 // back: they get as much real time as there is virtual time left. False at the run's end.
 bool IdleTime::AwaitOutside() {
   if (!run_.end.IsNever()) {

@@ -63,7 +63,7 @@ PollOutcome KernelEvents::OnProcessEnd(Subject process, std::uint32_t, EventTime
     return kConcernsAll;
   };
   if (!all_.gate_keeper.PutOff(runs ? run_.turn.task() : nullptr, end)) return end(when);
-  all_.reactor.Remove(run_.table.ProcessAt(process.index).pidfd.get());  // it is readable for ever
+  all_.reactor.Remove(run_.table.ProcessAt(process.index).pidfd.get());  // readable for ever
   return {};
 }
 
@@ -71,7 +71,8 @@ PollOutcome KernelEvents::OnAwaited(Subject subject, std::uint32_t, EventTime) {
   Task& task = run_.table.At(static_cast<int>(subject.index));
   auto* wait = task.Awaits<awaited::Descriptors>();
   if (wait == nullptr || subject != DescriptorWaits::SubjectOf(task, *wait)) return {};
-  // What comes in a later look is news: what was there may have gone before it was looked for.
+  // An event in a later look is news: an event that was there may have gone before it was looked
+  // for.
   if (wait->skips_in != 0 && wait->skips_in + 1 >= all_.reactor.next_look()) return {};
   all_.event_pump.NoteReady(task);
   return {.wakes_others = true};
@@ -105,7 +106,7 @@ PollOutcome KernelEvents::OnCommand(Subject channel, std::uint32_t, EventTime wh
   CommandSender from;
   if (run_.turn.HasClock()) {
     Task& task = *run_.turn.task();
-    // What it has posted it has sent before.
+    // The thread has sent the commands that it has posted before this one.
     if (const char* what = all_.posted.Take(task); what != nullptr) {
       all_.violations.EndProcess(*task.process, what);
       return {.stops_running = true};
@@ -117,7 +118,7 @@ PollOutcome KernelEvents::OnCommand(Subject channel, std::uint32_t, EventTime wh
   return {};
 }
 
-// The thread that has sent goes on, as far as those allow who receive it.
+// The thread that has sent goes on, as far as the receivers allow.
 PollOutcome KernelEvents::OnNetwork(Subject robot, std::uint32_t, EventTime when) {
   all_.network.Take(robot.index, when.at);
   all_.network_leaf.Update();
@@ -145,7 +146,7 @@ PollOutcome KernelEvents::OnDetectorEnd(Subject, std::uint32_t, EventTime) {
   return {.stops_running = true};
 }
 
-// Nothing comes of it for the run.
+// The question changes nothing for the run.
 PollOutcome KernelEvents::OnStateAsked(Subject, std::uint32_t, EventTime) {
   if (all_.state_link.TakeAsked())
     all_.state_link.Answer(all_.state_dump.Text(all_.home_processor.cpu(), HostTsc()));

@@ -1,4 +1,4 @@
-// What is done about what the kernel says, by the kind of descriptor that it says it at.
+// The handlers of what the kernel says, by the kind of descriptor at which the kernel says it.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ class KernelEvents : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  // With the reactor.
+  // Registers the handlers with the reactor.
   void Register();
 
  private:

@@ -1,5 +1,5 @@
-// Whose locks threads wait for, as far as locks say who has them: mutexes of the C library's, and
-// those that lend priority. Not semaphores, conditions, or a language's own.
+// The owners of locks that threads wait for, as far as locks say who has them: mutexes of the C
+// library's, and locks that lend priority. Not semaphores, conditions, or a language's own.
 //
 // For the coordinator's thread only. Reads the memory of programs.
 #pragma once
@@ -13,11 +13,11 @@
 
 namespace tcs {
 
-// Who has the lock that the thread waits for; null: it waits for none that says so.
+// The thread that has the lock that `task` waits for; null: `task` waits for no lock that says so.
 const Task* OwnerOfAwaitedLock(const Task& task, const RunState& run, const FutexTable& futexes);
 
-// What a thread that begins to wait waits for in the midst of its work: a lock, or that others take
-// what it sends. Any other wait is the end of an activation.
+// The reason for which a thread begins to wait in the midst of its work: a lock, or that others
+// take what the thread sends. Any other wait is the end of an activation.
 std::optional<AnswerBook::Pause> PauseOf(const Task& task, const RunState& run,
                                          const FutexTable& futexes, const AnswerFeed& answers);
 

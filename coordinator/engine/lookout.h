@@ -1,5 +1,5 @@
-// What need not be looked at in each step: the detector, processors that others claim, who watches,
-// a run that stands still.
+// Things that need not be looked at in each step: the detector, processors that others claim,
+// people who watch, a run that stands still.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@
 namespace tcs {
 
 // The virtual CPU of an ideal robot has been at this instant for long, of real time, though its
-// threads stop and go on: they may be answering each other for ever.
+// threads stop and go on: these threads may be answering each other for ever.
 bool Loop::StandsForEver(VirtualCpu& cpu) const {
   const HostTime now = all_.pacing.RunningTime();
   if (std::exchange(cpu.stands_at, cpu.progress) != cpu.progress) cpu.stands_since = now;
@@ -43,7 +43,8 @@ void Loop::LetWorldGoOnWithout(Task& task) {
   all_.waker.Refresh(*task.process->robot);
 }
 
-// Its clock has shown so much of the time to come already: it passes without the thread.
+// The thread's clock has shown so much of the time to come already: that time passes without the
+// thread.
 void Loop::PayDebt(Task& task, VirtualDuration passes) {
   task.debt -= passes;
   if (run_.IsCallback()) {
@@ -66,11 +67,11 @@ void Loop::StepCpu(VirtualCpu& cpu) {
   robot.scheduler.EndTurn(cpu.core);
   all_.waker.Refresh(robot);
   const RobotScheduler::Turn turn = robot.scheduler.Next(cpu.core);
-  // What was due may have woken somebody who acts on another virtual CPU first; and more may be due
-  // here before the turn begins.
+  // An event that was due may have woken a thread that acts on another virtual CPU first; and more
+  // may be due here before the turn begins.
   if (turn.start > cpu.progress || run_.root.First() != cpu.leaf) return;
   Task& task = run_.table.At(turn.thread);
-  TCS_CHECK(task.reached <= cpu.progress);  // nobody runs before what has made it ready
+  TCS_CHECK(task.reached <= cpu.progress);  // no thread runs before what has made it ready
   task.cpu = &cpu;
   ProgramClock& clock = task.process->clock;
   if (run_.IsCallback()) clock.LetWorldCatchUp(cpu.progress);
@@ -102,7 +103,7 @@ void Loop::StepCpu(VirtualCpu& cpu) {
   if (task.turns_beside) {
     all_.early_turns.Take(task);
   } else if (all_.ahead.TakeTurn(task, horizon)) {
-    // It has computed that already.
+    // The thread has computed that already.
   } else if (OnlyPays(task.state, start, task.debt, horizon)) {
     PayDebt(task, horizon - start);
   } else if (all_.spins.IsBeforeItsLook(task)) {
@@ -137,7 +138,7 @@ bool Loop::Step() {
   all_.ahead.Look();
   if (all_.outside.TakeRested()) all_.outside_leaf.LookAgainAtHidden();
   if (all_.outside.IsAwaited() || all_.outside_leaf.is_shown()) all_.outside_leaf.Update();
-  // Where everything is at the start, people see who watch a run that stands there.
+  // People who watch a run that stands at its start see where everything is.
   if (all_.pacing.IsOn() && all_.world.present() && all_.world.NextStop() == VirtualTime() &&
       all_.world_leaf.Step())
     return true;
@@ -154,7 +155,7 @@ bool Loop::Step() {
   VirtualCpu& cpu = run_.cpus[static_cast<std::size_t>(run_.root.First())];
   const bool idle = cpu.robot->scheduler.Next(cpu.core).thread == RobotScheduler::kNobody;
   if (idle && !all_.idle_time.HasJumpedOver()) return true;
-  // What was there may have made another one the least.
+  // An event that was there may have made another virtual CPU the least.
   if (run_.root.First() == cpu.leaf) StepCpu(cpu);
   return true;
 }

@@ -10,7 +10,7 @@ class Loop : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  // One step of the run; false at its end.
+  // A step of the run; false at the run's end.
   bool Step();
   bool reached_end() const { return reached_end_; }
 

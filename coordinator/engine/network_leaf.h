@@ -10,10 +10,10 @@ class NetworkLeaf : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  // Of that number among the robots' computers.
+  // `computer`: the leaf's number among the robots' computers.
   void Join(int computer);
   TemporalConsistency::Leaf leaf() const { return leaf_; }  // -1: there is no network
-  // Packets arrive once nobody can act before that. False if none does.
+  // Packets arrive once no thread can act before that. False if no packet arrives.
   bool Step();
   // Another packet is on its way.
   void Update() { ShowAt(progress_); }

@@ -27,15 +27,16 @@ PollOutcome NotificationReceiver::Arrived(Task& task, EventTime when) {
     found.looks_again = Handle(task);
     return found;
   } else if (!task.parked || task.trap_id != 0) {
-    // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
-    // outside has ended its trapped call.
+    // The thread ran on while the coordinator slept for a thread that the kernel held; or a signal
+    // from outside has ended its trapped call.
     if (task.state == TaskState::kWaiting) all_.waker.Wake(task, shm::WakeReason::kSignal, when);
     all_.gate_keeper.ChargeUndispatched(task);
     task.trap_id = 0;
     task.notified_early = true;
   } else if (SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
-    // The kernel let it run a handler before its turn, which is to answer what it said before. When
-    // it says so depends on the host, and is no concern of whoever has a turn.
+    // The kernel let the thread run a handler before its turn, which is to answer what the thread
+    // said before. The time at which the thread says so depends on the host, and is no concern of a
+    // thread that has a turn.
     HandlerCame(task, when);
     return {};
   }
@@ -65,7 +66,7 @@ bool NotificationReceiver::Handle(Task& task) {
 
 bool NotificationReceiver::PutOff(Task& task) {
   return all_.gate_keeper.PutOff(&task, [this, &task, tid = task.tid](EventTime at) {
-    // It may have ended meanwhile.
+    // The thread may have ended meanwhile.
     if (run_.table.Living(tid) != &task) return PollOutcome{};
     task.is_put_off = false;
     return Arrived(task, at);
@@ -83,7 +84,7 @@ PollOutcome NotificationReceiver::Take(const Process& process, EventTime when) {
     Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
     if (task == nullptr || task->state == TaskState::kDead) continue;
     if (all_.gate_keeper.IsSaidBeforeTurn(*task, messages[i])) continue;
-    // One that says so again and again is heard once.
+    // A thread that says so again and again is heard once.
     if (!task->is_put_off && run_.is_unprivileged) task->is_put_off = PutOff(*task);
     if (!task->is_put_off) found |= Arrived(*task, when);
   }

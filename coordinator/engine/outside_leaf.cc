@@ -9,7 +9,7 @@ namespace tcs {
 
 namespace {
 
-// There may be somebody to stop the run, or something to be said, meanwhile.
+// Somebody may stop the run, or there may be something to say, meanwhile.
 constexpr HostDuration kLook = HostDuration::Milliseconds(20);
 
 }  // namespace

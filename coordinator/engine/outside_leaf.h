@@ -1,5 +1,5 @@
-// What comes from outside of the run, as a leaf of it: virtual time keeps to real time while
-// something from there is waited for (calls/outside_waits.h).
+// Events from outside of the run, as a leaf of the run: virtual time keeps to real time while such
+// an event is waited for (calls/outside_waits.h).
 #pragma once
 
 #include "coordinator/engine/engine_part.h"
@@ -15,16 +15,17 @@ class OutsideLeaf : public EnginePart {
   void Join(int computer);
   TemporalConsistency::Leaf leaf() const { return leaf_; }
 
-  // Its leaf stands where the earliest of what may come is seen.
+  // The leaf stands where the earliest event that may come is seen.
   void Update();
   bool is_shown() const { return is_shown_; }
-  // What was hidden may be no more.
+  // Events that were hidden may be hidden no more.
   void LookAgainAtHidden();
-  // Nothing is before what comes from outside next: it is shown, or waited for in real time. False
-  // where somebody else acts first.
+  // Nothing is before the next event from outside: the event is shown, or waited for in real time.
+  // False where another leaf acts first.
   bool Step();
   bool awaits() const { return awaits_; }  // in real time, just now
-  // While it is waited for, what comes does so at the virtual time that the real one stands for.
+  // While the leaf waits in real time, an event comes at the virtual time that the real one stands
+  // for.
   EventTime WhenItCame(EventTime when) const;
 
  private:

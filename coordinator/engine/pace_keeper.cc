@@ -22,7 +22,7 @@ constexpr HostDuration kPaused = HostDuration::Milliseconds(2000);
 
 }  // namespace
 
-// When something happens next, as far as that depends on nobody outside.
+// When something happens next, as far as that depends on nothing outside.
 VirtualTime PaceKeeper::NextAct() const {
   const VirtualTime least = std::min(run_.root.Least(), run_.end);
   return all_.world_leaf.GoesOn() ? std::min(least, all_.world.NextStop()) : least;
@@ -51,12 +51,12 @@ bool PaceKeeper::Keep() {
       wait = Pacing::kLook;
     }
     if (!std::exchange(has_drained, true)) {
-      // What is there already came before.
+      // Events that are there already came before.
       all_.event_pump.Poll(EventPump::kNoWait, {run_.latest});
     } else {
       Beat();
       all_.lookout.Look();
-      // Where it stands now is to be seen at once.
+      // The place where the run stands now is to be seen at once.
       if (all_.pacing.pacer().stands() && !std::exchange(has_stood, true)) next_flush_ = {};
       if (wait >= kWorthFlushing) FlushForWatchers();
       const bool looks = all_.waker.unseen() > 0 || run_.is_unprivileged;

@@ -10,16 +10,15 @@ class PaceKeeper : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  // Until the run may act; false if it is to end instead. What comes from outside meanwhile happens
-  // at the time that the wall clock stands for. Of the programs nobody runs, so nothing else
-  // happens.
+  // Waits until the run may act; false if the run is to end instead. An event from outside happens
+  // meanwhile at the time that the wall clock stands for. No program runs, so nothing else happens.
   bool Keep();
 
  private:
   VirtualTime NextAct() const;
   void FlushForWatchers();
 
-  HostTime standing_since_;  // while it stands
+  HostTime standing_since_;  // while the run stands
   HostTime next_flush_;
 };
 

@@ -10,7 +10,8 @@ namespace tcs {
 
 namespace {
 
-// What people see need not be newer; in between nothing is written to memory that others look at.
+// The values that people see need not be newer; in between nothing is written to memory that others
+// look at.
 constexpr HostDuration kTellEvery = HostDuration::Milliseconds(5);
 
 }  // namespace
@@ -37,7 +38,7 @@ void Pacing::TakeControlRequests(HostTime now) {
   if (asked->pace != pacer_.pace()) pacer_.SetPace(asked->pace, now);
 }
 
-// Nobody could let the run go on any more.
+// Without the server nothing could let the run go on any more.
 void Pacing::LookAtServer(HostTime now) {
   if (is_orphaned_ || !view_->IsGone()) return;
   is_orphaned_ = true;

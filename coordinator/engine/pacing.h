@@ -1,6 +1,6 @@
 // When the run may act: at the pace that it is given, and as the people ask who watch it on its
-// live page. It only ever holds the run back, in real time. Without a pace and a page it is not
-// there.
+// live page. Pacing only ever holds the run back, in real time. Without a pace and a page there is
+// no pacing.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -25,15 +25,16 @@ class Pacing {
   bool IsOn() const { return is_on_; }
   bool IsWatched() const { return view_ != nullptr; }
 
-  // For how long the run, which acts at `next` next, is to wait before it asks again; 0: it may act
-  // now. At most kLook: people may ask for something meanwhile.
+  // For how long the run, which acts at `next` next, is to wait before it asks again; 0: the run
+  // may act now. At most kLook: people may ask for something meanwhile.
   static constexpr HostDuration kLook = HostDuration::Milliseconds(20);
   HostDuration ToWait(VirtualTime next);
 
   const Pacer& pacer() const { return pacer_; }
   // Of the real time since the run began, for how long it was held back.
   HostDuration held() const { return held_; }
-  // The host's time without that: nobody is to be taken for standing still who was held.
+  // The host's time without the time held back: a thread that was held back is not to be taken for
+  // standing still.
   HostTime RunningTime() const { return RunClock::Now() - held_; }
   PaceReport Report() const;
 

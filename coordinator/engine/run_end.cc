@@ -38,8 +38,8 @@ void RunEnd::BeginGrace() {
   all_.grace.Begin();
 }
 
-// None of those that are killed may keep the processor meanwhile, nor this process, which
-// waits in the kernel for the last steps of their threads.
+// No process that is killed may keep the processor meanwhile, nor may this process, which waits in
+// the kernel for the last steps of the killed processes' threads.
 void RunEnd::Shutdown() {
   all_.state_link.Does(Doing::kEnds, HostTsc());
   run_.header->shutdown.store(1);

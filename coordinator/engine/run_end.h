@@ -11,7 +11,7 @@ class RunEnd : public EnginePart {
 
   // The clients that still live get their grace (grace.h), in which the loop goes on for them.
   void EndClients();
-  // Whoever is left now is killed.
+  // Kills the processes that are left now.
   void Shutdown();
 
  private:

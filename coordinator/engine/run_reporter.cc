@@ -121,7 +121,7 @@ void RunReporter::Answer(VirtualTime end) {
   }
 }
 
-// Of those that were never started, the ones that waited for another client.
+// Warns of the clients that were never started because they waited for another client.
 void RunReporter::WarnOfNeverStarted() {
   if (!run_.report.error.empty() || run_.stop.asked()) return;
   for (const Launches::Launch& launch : from_.launches.all()) {
@@ -131,8 +131,9 @@ void RunReporter::WarnOfNeverStarted() {
   }
 }
 
-// A robot that was out of reach of its programs, or they of it, has done nothing of what it was run
-// for, and neither status nor summary would say so. Who failed has said why.
+// A robot that was out of reach of its programs, or whose programs were out of its reach, has done
+// nothing of what it was run for, and neither status nor summary would say so. A client that failed
+// has said why.
 void RunReporter::WarnOfEndsThatDidNotMeet() {
   const auto ended = [](const Process& process) { return process.ended_at.has_value(); };
   const auto failed = [&](const Process& process) {
@@ -146,7 +147,7 @@ void RunReporter::WarnOfEndsThatDidNotMeet() {
   if (!from_.world.present()) return;
   for (const std::string& warning : from_.world.CommandComplaints()) run_.Warn(warning);
   for (const std::string& warning : from_.world.LossesOfSensors()) run_.Warn(warning);
-  // Whoever has ended may have listened before.
+  // A client that has ended may have listened before.
   const auto gone = [&](const Process& process) { return process.is_client && ended(process); };
   if (std::any_of(run_.table.processes().begin(), run_.table.processes().end(), gone)) return;
   for (const std::string& warning : from_.world.UnheardSensors()) run_.Warn(warning);

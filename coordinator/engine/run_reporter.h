@@ -22,7 +22,7 @@ namespace tcs {
 
 class RunReporter {
  public:
-  // All that it reads. They outlive it.
+  // The objects that the reporter reads, which outlive it.
   struct Sources {
     const RunClock& clock;
     const World& world;
@@ -40,12 +40,12 @@ class RunReporter {
 
   RunProgress Now() const;
 
-  // The run is over, at `end`: its figures, and warnings of what cannot have been meant.
-  // What clients do from now on is no part of it.
+  // The run is over, at `end`: reports its figures, and warns of what cannot have been meant. The
+  // run does not include what clients do from now on.
   void Conclude(VirtualTime end);
 
  private:
-  // Of the processor that the run has had, what was the coordinator's own.
+  // The coordinator's own part of the processor time that the run has had.
   std::int64_t CoordinatingNs() const;
   ClientReport ReportOf(const Launches::Launch& launch) const;
   void Answer(VirtualTime end);

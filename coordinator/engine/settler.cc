@@ -31,15 +31,16 @@ bool Settler::TakeNotesOf(Task& task) {
 
 void Settler::Settle(Task& task) {
   if (task.slot < 0) return;
-  // Other threads of its process may write there meanwhile: what is checked is what is reckoned
-  // with.
+  // Other threads of the process may write to the slot meanwhile: the values that are checked are
+  // those that are reckoned with.
   shm::ThreadSlot& slot = SlotOf(task);
   shm::ClockPage page;
   shm::CopyPage(slot.clock, &page);
   const shm::NotificationKind kind = slot.note.kind;
   const std::int64_t noted_ns = slot.note.time_ns;
   const char* what = all_.slot_check.WhatIsImpossible(task, page);
-  // What it has received before it is told where its activations end; no clock is past the horizon.
+  // The thread's receptions are taken before the ends of its activations are told; no clock is past
+  // the horizon.
   const VirtualTime furthest =
       run_.IsCallback() ? task.cpu->progress : std::max(task.cpu->progress, run_.turn.horizon());
   if (what == nullptr) what = all_.datagrams.TakeNotes(task, furthest);
@@ -53,7 +54,7 @@ void Settler::Settle(Task& task) {
   const bool ends = run_.turn.trapped.has_value() && IsEnd(*run_.turn.trapped);
   if (ends) metered.AuditAtEnd();
   all_.host_cpu.End(task, CpuClockOf(task), &page);
-  // What is charged here the thread's own word does not have.
+  // The thread's own word does not have what is charged here.
   task.settled_adjust_ns = shm::AdjustValue(page.executed_adjust.load());
   // The shim counts and charges the calls that it sees, whatever the C library calls for it.
   const bool made_unseen_call = run_.turn.trapped.has_value() &&
@@ -67,8 +68,8 @@ void Settler::Settle(Task& task) {
     return clock.RobotTimeOf(OwnTime(own_ns));
   };
   const VirtualTime start = task.cpu->progress;
-  // Whom it has woken, however long ago it sent what did, it must not have left behind further than
-  // the drift bound: what it has computed beyond is a debt.
+  // A thread must not have left behind the threads that it has woken further than the drift bound,
+  // however long ago it sent what woke them: the time computed beyond is a debt.
   if (!run_.IsCallback()) {
     run_.turn.LimitTo(run_.root.Horizon(task.cpu->leaf));
   }
@@ -114,8 +115,8 @@ void Settler::Settle(Task& task) {
   }
   task.cpu->ComeTo(progress);
   task.ComeTo(progress);
-  // Should it run on undispatched, while the kernel holds the one whose turn it is, it comes to its
-  // gate when it next looks at its clock: others may have gone on since.
+  // Should the thread run on undispatched, while the kernel holds the thread whose turn it is, it
+  // comes to its gate when it next looks at its clock: others may have gone on since.
   slot.clock.horizon_ns = task.grant.horizon_ns = 0;
   if (Waker::IsRunnable(task)) all_.waker.Requeue(task);
   TakeNotesOf(task);

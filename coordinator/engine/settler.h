@@ -1,4 +1,5 @@
-// What follows a turn: what its thread may have done, and what it is charged for it.
+// The settlement after a turn: whether its thread may have done what it says, and what the thread
+// is charged.
 #pragma once
 
 #include "coordinator/engine/engine_part.h"
@@ -14,9 +15,9 @@ class Settler : public EnginePart {
   // The thread has stopped: the charge, the new progress of its virtual CPU, credit or debt. A
   // process that has written what it cannot have done is ended.
   void Settle(Task& task);
-  // False if the thread cannot have done what it has noted: its process is ended for that.
+  // False if the thread cannot have done what it has noted: the thread's process is ended for that.
   bool TakeNotesOf(Task& task);
-  // Time that the host's clock shows as the thread's, and that the host gave to others.
+  // Takes out time that the host's clock shows as the thread's, and that the host gave to others.
   void TakeOutUnaccounted(Task& task, const shm::ClockReading& before, HostDuration asked);
 };
 

@@ -41,7 +41,7 @@ namespace {
 // Deterministic runs begin on 2024-01-01T00:00:00Z.
 constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
 
-// What is freed is kept for what is needed next. The page faults of memory that comes anew from the
+// Freed memory is kept for what is needed next. The page faults of memory that comes anew from the
 // kernel take milliseconds where models meet, and their engine is built, in the middle of a run.
 void KeepFreedMemory() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
@@ -59,8 +59,8 @@ std::string Setup::Prepare() {
   KeepFreedMemory();
   all_.state_link.Open(run_.options.output_directory);
   all_.state_link.Does(Doing::kPrepares, HostTsc());
-  // What refuses the run comes first: before others are waited for, and before an earlier run's
-  // results are written over.
+  // Checks that may refuse the run come first: before other runs are waited for, and before an
+  // earlier run's results are written over.
   if (!run_.IsFixed() && KindOfHostsTsc() == TscKind::kNoClock) {
     return "this processor's TSC changes its rate or stops, and by it programs would be charged; "
            "use a machine whose /proc/cpuinfo shows constant_tsc and nonstop_tsc, or `--accounting "
@@ -77,11 +77,11 @@ std::string Setup::Prepare() {
       !error.empty()) {
     return error;
   }
-  // A step that takes long is not to hold up who asks for the end.
+  // A step that takes long is not to hold up a request to end the run.
   all_.world.InterruptBy([this] { return !run_.stop.asked() && all_.end_requests.IsPending(); });
   if (std::string taken = all_.home_processor.Take(run_); !taken.empty()) return taken;
-  // Before there are threads, which have the mask of whoever makes them, and files that tell that
-  // the run has begun.
+  // Before there are threads, which inherit the signal mask of the thread that creates them, and
+  // before there are files that tell that the run has begun.
   all_.end_requests.Open(all_.reactor);
   const int home = all_.home_processor.cpu();
   all_.state_link.RunsOn(home);
@@ -90,7 +90,7 @@ std::string Setup::Prepare() {
   if (!GivesRealTime(all_.real_time)) IgnoreLackOfRealTimeLimit();
   if (!BindTo(0, home)) return "cannot bind to CPU " + std::to_string(home);
   if (run_.is_unprivileged) {
-    LeaveRealTime(0);  // which whoever started tcsim may have given it
+    LeaveRealTime(0);  // which tcsim may have been started with
     BeWokenInTime();
     UseNoLevels();
     TellOfMissingRights();
@@ -132,7 +132,7 @@ std::string Setup::PrepareParts(const std::vector<int>& further_cpus) {
   return PrepareHostCpu();
 }
 
-// Who is late, and why, is kept of runs whose results are.
+// The records of who is late, and why, are kept for runs whose results are kept.
 std::string Setup::OpenAnswers() {
   all_.answers.Open(run_.scenario);
   all_.activations.Tell(&all_.answers, [this](const Task& task) {
@@ -209,7 +209,7 @@ std::uint64_t Setup::CounterRate() const {
   return static_cast<std::uint64_t>(mhz * 4294967296 / 1000);
 }
 
-// Of the next robot.
+// The seed of the next robot.
 std::optional<std::uint64_t> Setup::TurnsSeed() const {
   if (!run_.IsFixed()) return std::nullopt;
   return run_.scenario.seed * 0x9e3779b97f4a7c15 + run_.robots.size();
@@ -266,7 +266,7 @@ std::string Setup::PrepareHostCpu() {
   return {};
 }
 
-// Whoever keeps something for a thread that waits.
+// Names the parts that keep something for a thread that waits.
 void Setup::TellOfWaits() {
   all_.waker.Tell({
       .began_by_signal =

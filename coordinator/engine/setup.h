@@ -1,5 +1,5 @@
-// What a run needs before its first step: the run's memory, the sockets that clients find us by,
-// the processor that they run on.
+// The preparation of a run before its first step: the run's memory, the sockets by which clients
+// find the coordinator, the processor on which clients run.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ class Setup : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  // Who has to be told of waits and ends is named. Once, before anything else.
+  // Names the parts that have to be told of waits and ends. Once, before anything else.
   void Connect();
   // Empty on success, else one sentence.
   [[nodiscard]] std::string Prepare();
-  // Of that, what takes nothing of the machine's: the run's memory, and those who hear of its
-  // events. The same is returned.
+  // The part of Prepare() that takes nothing of the machine's: the run's memory, and the parts that
+  // hear of its events. Returns the same.
   [[nodiscard]] std::string PrepareParts(const std::vector<int>& further_cpus);
   void MakeRobots();
 

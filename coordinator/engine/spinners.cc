@@ -8,8 +8,8 @@
 
 namespace tcs {
 
-// On an ideal robot computing never takes time. The thread waits until somebody has run, and looks
-// again, as long as it makes no call.
+// On an ideal robot computing never takes time. The thread waits until another thread has run, and
+// looks again, as long as it makes no call.
 void Spinners::StepAside(Task& task) {
   if (run_.turn.HasSpoken() || task.state == TaskState::kDead) {
     task.spins = false;

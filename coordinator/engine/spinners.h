@@ -1,5 +1,5 @@
-// Threads of ideal robots that compute at one instant without end: they stepped aside, and look
-// again once somebody has run.
+// Threads of ideal robots that compute at one instant without end: such threads have stepped aside,
+// and look again once another thread has run.
 #pragma once
 
 #include "coordinator/engine/engine_part.h"

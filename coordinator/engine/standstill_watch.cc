@@ -25,7 +25,7 @@ std::string NameOf(const Process& process) {
   return process.is_client ? process.name : NameOf(process.pid);
 }
 
-// The first few of them, and how many more there are.
+// The first few entries, and how many more there are.
 std::string Joined(const std::vector<std::string>& all) {
   std::string text;
   for (std::size_t i = 0; i < std::min(all.size(), kMostNamed); ++i) {
@@ -37,7 +37,7 @@ std::string Joined(const std::vector<std::string>& all) {
 
 }  // namespace
 
-// Whom time waits for, and what for, one phrase for each program.
+// The programs that time waits for, and what for, one phrase for each program.
 std::vector<std::string> StandstillWatch::WhatIsAwaited() const {
   std::vector<std::string> awaited;
   for (const Process& process : run_.table.processes()) {
@@ -64,8 +64,8 @@ bool StandstillWatch::AwaitsTerminal() const {
          });
 }
 
-// Who computes without tcs's knowing of it: a program with threads that never registered, a child
-// of a bare clone.
+// The programs that compute without tcs's knowing of it: a program with threads that never
+// registered, a child of a bare clone.
 std::vector<std::string> StandstillWatch::WhatComputesUnregistered() const {
   std::vector<std::string> computing;
   for (const Process& process : run_.table.processes()) {
@@ -103,7 +103,8 @@ void StandstillWatch::NoteStandstill(HostTime now, VirtualTime furthest) {
                   furthest.seconds(), standstill_.stood.seconds(), why));
 }
 
-// A program alone has ended, and the run goes on for what it has left in the background.
+// A program alone has ended, and the run goes on for the processes that it has left in the
+// background.
 void StandstillWatch::NoteLeftBehind(HostTime now) {
   std::vector<std::string> ended, left;
   for (const Process& process : run_.table.processes()) {

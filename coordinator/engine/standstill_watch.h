@@ -1,5 +1,5 @@
-// Tells a user who sees nothing happen, once: whom the run waits for, and what for. Nothing of this
-// changes what the run does.
+// Tells a user who sees nothing happen, once: which programs the run waits for, and what for.
+// Nothing of this changes what the run does.
 //
 // For the coordinator's thread only. Reads /proc when there is something to tell. Real nanoseconds
 // where not said otherwise.
@@ -19,19 +19,19 @@ class StandstillWatch {
  public:
   // Shorter waits for what comes from outside are usual.
   static constexpr HostDuration kPatience = HostDuration::Seconds(5);
-  // So much counts of what is between two looks: the run itself may have had no processor.
+  // Of the time between two looks so much counts: the run itself may have had no processor.
   static constexpr HostDuration kMostBetweenLooks = HostDuration::Seconds(2);
 
   StandstillWatch(const RunState& run, const UnregisteredThreads& unregistered,
                   const UnregisteredChildren& unregistered_children)
       : run_(run), unregistered_(unregistered), unregistered_children_(unregistered_children) {}
 
-  // It is `now`, and the furthest of all leaves has come to `furthest`. To be called now and then.
-  // What there is to tell goes to RunOptions::on_notice, which must be set.
+  // `now` is the current time, and the furthest of all leaves has come to `furthest`. To be called
+  // now and then. A notice goes to RunOptions::on_notice, which must be set.
   void Look(HostTime now, VirtualTime furthest);
 
  private:
-  // What has not changed since.
+  // The state that has not changed since.
   struct Standstill {
     std::int64_t dispatches = -1;
     VirtualTime furthest;

@@ -49,7 +49,7 @@ const char* NameOfGate(std::uint32_t gate) {
   }
 }
 
-// One look at the run.
+// A look at the run.
 class Look {
  public:
   Look(const StateDump::Sources& from, std::uint64_t now_tsc)
@@ -111,7 +111,7 @@ class Look {
             {"host_ns", world.host_ns()}};
   }
 
-  // Who runs on which processor of the host.
+  // Which thread runs on which processor of the host.
   Json HostCpus(int host_cpu) const {
     Json home = {{"cpu", host_cpu}, {"thread", nullptr}};
     if (const Task* task = run_.turn.task(); task != nullptr) {
@@ -155,7 +155,7 @@ class Look {
     return robots;
   }
 
-  // What several threads wait for, in the order in which they are woken.
+  // The queues in which several threads wait, in the order in which the threads are woken.
   Json Queues() const {
     Json futexes = Json::array();
     for (const FutexKey& word : from_.futexes.AwaitedWords()) {
@@ -197,10 +197,10 @@ class Look {
     return now_tsc_ < tsc ? 0 : from_.clock.NsAt(now_tsc_) - from_.clock.NsAt(tsc);
   }
 
-  // What a word says may be the number of a thread, or something else.
+  // The value of a word may be the number of a thread, or something else.
   bool IsThread(pid_t tid) const { return tid > 0 && run_.table.Living(tid) != nullptr; }
 
-  // Of the running thread; none where that is not known while it runs.
+  // The clock of the running thread; none where the clock is not known while the thread runs.
   std::optional<shm::ClockReading> RunningClock() const {
     if (!run_.turn.HasClock() || !from_.host_cpu.stands_still()) return std::nullopt;
     return from_.host_cpu.ClockOf(*run_.turn.task());
@@ -304,7 +304,7 @@ class Look {
     return "ended";
   }
 
-  // Goes on after the thread's name.
+  // The text goes on after the thread's name.
   std::string TextOf(const Task& task) const {
     if (run_.turn.IsOf(task)) return "runs";
     switch (task.state) {

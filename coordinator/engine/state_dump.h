@@ -1,8 +1,9 @@
 // The whole state of a run, as `tcsim dump` asks for it: where each part is in virtual time, what
-// each thread does or waits for, and on whom; which queues there are, and who is in them.
+// each thread does or waits for, and on whom; which queues there are, and which threads are in
+// them.
 //
 // For the coordinator's thread only. Changes nothing and looks at no other process: some
-// microseconds for each thread. What the kernel knows of threads the asker adds (dump/kernel.h).
+// microseconds for each thread. The asker adds what the kernel knows of threads (dump/kernel.h).
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,7 @@ namespace tcs {
 
 class StateDump {
  public:
-  // All that it reads. They outlive it.
+  // The objects that the dump reads, which outlive it.
   struct Sources {
     const RunState& run;
     const RunClock& clock;
@@ -45,8 +46,8 @@ class StateDump {
 
   explicit StateDump(const Sources& from) : from_(from) {}
 
-  // JSON, as docs/DEBUGGING.md describes it. The threads take turns on processor `host_cpu`; it is
-  // `now_tsc`.
+  // JSON, as docs/DEBUGGING.md describes it. The threads take turns on processor `host_cpu`; the
+  // current TSC is `now_tsc`.
   [[nodiscard]] std::string Text(int host_cpu, std::uint64_t now_tsc) const;
 
  private:

@@ -16,15 +16,16 @@ namespace tcs {
 
 namespace {
 
-// What a child that has its parent's memory and place (spawns.h) does to time, it does to the
-// parent's. All else is the child's own.
+// A child that has its parent's memory and place (spawns.h) sleeps in its parent's time. All other
+// calls are the child's own.
 bool IsSleep(const TrappedCall& call) {
   return call.number == SYS_nanosleep || call.number == SYS_clock_nanosleep;
 }
 
-// The kernel has the thread make the call again in which it waits for its answer, as it is: the
-// thread was frozen meanwhile with its container or the machine, say, or a tracer has looked at it.
-// Not so a call that a signal was to end: that has ended, and this is the next one.
+// True if the kernel has the thread make the call again in which the thread waits for its answer,
+// as it is: the thread was frozen meanwhile with its container or the machine, say, or a tracer has
+// looked at it. Not so a call that a signal was to end: that call has ended, and this is the next
+// one.
 bool MakesCallAgain(Task& task, const TrappedCall& call) {
   const bool is_over =
       task.trap_id != 0 && !task.wait.has_value() && EndsBySignal(task.trap_result);
@@ -43,19 +44,19 @@ bool MakesCallAgain(Task& task, const TrappedCall& call) {
 }  // namespace
 
 // A signal was to end the thread's wait, but the kernel has none for the thread: another thread of
-// its process handles it. The thread's call is taken as one that it makes again, as the kernel
-// would have it. So no thread but one that is marked for a signal is answered that a signal has
-// ended its call, and the kernel shows no program that number.
+// its process handles the signal. The thread's call is taken as one that the thread makes again, as
+// the kernel would have it. So no thread but one that is marked for a signal is answered that a
+// signal has ended its call, and the kernel shows no program that number.
 void TrapReceiver::TakeAgainIfUnmarked(Task& task) {
   if (task.trap_id == 0 || task.trap_continues || !EndsBySignal(task.trap_result)) return;
-  if (task.slot >= 0) TimerSignals::SendTo(task);  // it may be one of these
+  if (task.slot >= 0) TimerSignals::SendTo(task);  // the signal may be one of these
   if (IsMarkedForSignal(task.tid) || !HasAnswerToTake(task.trap_listener, task.trap_id)) return;
   TCS_CHECK(task.unanswered_call.id == task.trap_id);
   task.early_trap = task.unanswered_call;
   task.trap_id = 0;
 }
 
-// Null: nobody's who is known.
+// The thread that made the call; null: none that is known.
 Task* TrapReceiver::TaskOf(const TrappedCall& call) {
   Task* task = run_.table.Living(call.tid);
   return task == nullptr && IsSleep(call) ? all_.spawns.ActsFor(call.tid) : task;
@@ -72,7 +73,7 @@ PollOutcome TrapReceiver::Arrived(int listener, EventTime when) {
     CallFiles::Answer(run_.table.Living(call->tid), *call);
     return {};
   }
-  // Most files are the kernel's to open, and nobody's business here.
+  // Most files are the kernel's to open, and do not concern the coordinator.
   if (ComputerFiles::IsOpen(*call) && !ComputerFiles::IsOfComputer(*call)) {
     all_.guard.LetThrough(*call);
     return {};
@@ -82,9 +83,9 @@ PollOutcome TrapReceiver::Arrived(int listener, EventTime when) {
   if (by != nullptr && by->turns_beside) return take(when);
   if (IsExecution(*call) || IsEnd(*call)) {
     if (by != nullptr) by->executes = IsExecution(*call);
-    // What it has made is not its child any more afterwards, or not in its place.
+    // A child that the thread has made is not its child any more afterwards, or not in its place.
     if (by != nullptr) all_.spawns.MakerSpeaks(*by, when);
-    // Nobody else may have the process's descriptors when they are closed.
+    // No other process may have the process's descriptors when they are closed.
     Process* process = run_.table.LivingProcess(ProcessOfThread(call->tid));
     if (process != nullptr && process->broker != nullptr) process->broker->End();
     all_.guard.LetThrough(*call);
@@ -128,8 +129,8 @@ void TrapReceiver::TakeCallsOfNewborns(EventTime when) {
 PollOutcome TrapReceiver::Take(const TrappedCall& call, EventTime when) {
   Task* task = TaskOf(call);
   if (task != nullptr) task->is_call_put_off = false;
-  // Before it registers a thread is known if it was announced, and others may wait with it for a
-  // lock of the C library; what else it calls then is the loader's business.
+  // Before a thread registers it is known if it was announced, and others may wait with it for a
+  // lock of the C library; any other call of the thread is the loader's business then.
   const bool ours = task != nullptr && (task->slot >= 0 || call.number == SYS_futex);
   if (!ours) {
     all_.trapped.HandleUnregistered(call, when);
@@ -144,11 +145,11 @@ PollOutcome TrapReceiver::Take(const TrappedCall& call, EventTime when) {
     run_.turn.trapped = call;
     return kConcernsAll;
   }
-  // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
-  // again, or it came back from a call that nobody saw.
+  // The thread ran although it was not dispatched: a signal has ended its call, and the kernel
+  // makes the call again, or the thread came back from a call that nobody saw.
   if (task->state == TaskState::kUnseen) all_.unseen_threads.ComeBack(*task, when);
   if (task->state == TaskState::kWaiting) all_.waker.Wake(*task, shm::WakeReason::kSignal, when);
-  // What it has done in a turn beside others is charged when that has its order.
+  // The thread's work in a turn beside others is charged when that turn has its order.
   if (!task->turns_beside) all_.gate_keeper.ChargeUndispatched(*task);
   task->early_trap = call;
   task->trap_id = 0;

@@ -1,5 +1,5 @@
-// System calls of clients that the kernel hands over: whose they are, and whether they are
-// anybody's business.
+// System calls of clients that the kernel hands over: which thread makes a call, and whether the
+// call concerns the coordinator.
 #pragma once
 
 #include <vector>
@@ -15,12 +15,12 @@ class TrapReceiver : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  // A trapped call has arrived. That of the running thread stops it like a notification.
+  // A trapped call has arrived. A call of the running thread stops the thread like a notification.
   PollOutcome Arrived(int listener, EventTime when);
-  // The makers of threads have gone on, so that it is known whose the calls are.
+  // The makers of threads have gone on, so that it is known which threads the calls are of.
   void TakeCallsOfNewborns(EventTime when);
-  // A signal was to end the thread's wait, but the kernel has none for the thread: its call is
-  // taken as one that it makes again.
+  // A signal was to end the thread's wait, but the kernel has none for the thread: the thread's
+  // call is taken as one that it makes again.
   void TakeAgainIfUnmarked(Task& task);
 
  private:

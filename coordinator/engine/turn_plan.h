@@ -1,9 +1,9 @@
-// What the loop decides of a virtual CPU's next turn, once the scheduler has chosen its thread: how
-// far the thread may run, whether others of the same instant go first, whether the turn only passes
-// what the thread has computed already, how far the world is to be taken ahead meanwhile, and
-// whether the thread counts as one that computes.
+// The loop's decisions about a virtual CPU's next turn, once the scheduler has chosen its thread:
+// how far the thread may run, whether others of the same instant go first, whether the turn only
+// passes what the thread has computed already, how far the world is to be taken ahead meanwhile,
+// and whether the thread counts as one that computes.
 //
-// loop.h does it. Pure: makes no system call, reads no clock.
+// loop.h carries them out. Pure: makes no system call, reads no clock.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace tcs {
 
-// What limits a turn but for the other threads of its robot.
+// The limits of a turn, but for the other threads of its robot.
 struct TurnLimits {
   VirtualTime start;                                   // the virtual CPU's progress
   VirtualTime apart = VirtualTime::Never();            // no leaf gets further from the slowest
@@ -29,7 +29,7 @@ constexpr VirtualTime FurthestOf(VirtualTime start) {
   return start + VirtualNs(shm::kMaxDispatchNs - 1);
 }
 
-// A launch or a look that is due already stops nobody before it has begun.
+// A launch or a look that is due already stops no turn before the turn has begun.
 constexpr VirtualTime LimitOf(const TurnLimits& limits) {
   constexpr VirtualDuration kBetweenLooks = VirtualDuration::Microseconds(10);
   VirtualTime limit = std::min(limits.apart, FurthestOf(limits.start));
@@ -39,15 +39,16 @@ constexpr VirtualTime LimitOf(const TurnLimits& limits) {
   return std::min(limit, std::max(limits.next_timer_look, limits.start + kBetweenLooks));
 }
 
-// A thread that may not run at all because at this very instant others may still wake somebody who
-// goes before it lets those others act first, once.
+// A thread that may not run at all, because at this very instant others may still wake a thread
+// that goes before it, lets those others act first, once.
 constexpr bool GivesWay(VirtualTime start, VirtualTime horizon, VirtualTime next_input,
                         bool has_given_way) {
   return horizon <= start && next_input == start && !has_given_way;
 }
 
-// The thread owes so much that it would come to its horizon without running: then that passes, and
-// it is not dispatched. One that has not registered has no clock that could show it.
+// The thread owes so much that it would come to its horizon without running: then that time passes,
+// and the thread is not dispatched. A thread that has not registered has no clock that could show
+// that time.
 constexpr bool OnlyPays(TaskState state, VirtualTime start, VirtualDuration debt,
                         VirtualTime horizon) {
   return state != TaskState::kStarting && start + debt >= horizon;
@@ -78,7 +79,7 @@ constexpr std::optional<VirtualTime> WhereToLead(const WorldBeside& beside) {
   const VirtualTime room =
       beside.computes ? beside.horizon : std::min(beside.horizon, beside.now + bound / 2);
   if (beside.world + bound >= room) return std::nullopt;
-  // As far as they may: the fewer slices, the better.
+  // The dynamics lead as far as they may: the fewer slices, the better.
   return beside.computes ? std::min(beside.now + bound, beside.apart) : beside.now;
 }
 

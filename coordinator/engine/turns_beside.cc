@@ -14,20 +14,20 @@ namespace {
 
 constexpr int kMostBegun = 4;
 constexpr std::size_t kMostThreads = 16;  // of a robot: all of them are looked at each time
-// So many turns in a row have to be so short before one is had beside; and twice as many each time
-// that the thread then did what ends such a turn.
+// So many turns in a row have to be so short before a turn is had beside; and twice as many each
+// time that the thread then did what ends such a turn.
 constexpr int kShortTurns = 3, kMostShortTurns = 256;
 constexpr HostDuration kShortTurn = HostDuration::Microseconds(200);
 // Between two looks, while a turn is waited for, at what the kernel has to say.
 constexpr std::int64_t kLookBesideNs = 20'000;
-// So long a thread may be kept from running by others of the host.
+// Others of the host may keep a thread from running for so long.
 constexpr std::int64_t kPatienceNs = 1'000'000;
 
 bool WaitsForTimeAtMost(const Task& task) {
   return task.state == TaskState::kReady || task.Awaits<awaited::Time>() != nullptr;
 }
 
-// Nothing is left of an earlier call, and nothing comes of its own.
+// Nothing is left of an earlier call of the thread, and nothing comes by itself.
 bool IsUndisturbed(const Task& task) {
   return task.slot >= 0 && task.trap_id == 0 && task.after_call == AfterCall::kNone &&
          !task.owes_ahead && !task.notified_early && !task.early_trap.has_value() && !task.executes;
@@ -103,10 +103,10 @@ bool TurnsBeside::Await(Task& task) {
     poll_({parts_.run.latest});
   }
   parts_.run.report.awaited_ns += clock.NsAt(now_tsc) - clock.NsAt(begun_tsc);
-  if (!task.turns_beside) return false;  // it has ended
+  if (!task.turns_beside) return false;  // the thread has ended
   if (!cpu_->GiveUp(task)) return true;
   parts_.records.EndsBeside(task);
-  // Others have the processor, or the thread computes longer than expected.
+  // Other threads have the processor, or this thread computes longer than expected.
   if (!task.early_trap.has_value() && !task.died_beside) {
     task.short_turns = 0;
     cpu_->LeaveToOthers(now_tsc);
@@ -140,7 +140,8 @@ void TurnsBeside::Forget(Task& task) {
 void TurnsBeside::NoteTurn(Task& task, bool beside) const {
   if (cpu_ == nullptr) return;
   const bool computes = task.ran >= kShortTurn || task.used_up >= Task::kComputes;
-  // Where the dynamics have something for the robot by then, it has to hold wherever it runs.
+  // Where the dynamics have something for the robot by then, the thread has to hold wherever it
+  // runs.
   const bool holds_for_others =
       task.state == TaskState::kHolding && OwnNow(task).ns() <= task.grant.local_read_safe_ns;
   const bool needs_its_order = holds_for_others || parts_.run.turn.trapped.has_value();

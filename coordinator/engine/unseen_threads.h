@@ -1,4 +1,5 @@
-// Threads that the kernel has in its hands, and what runs without a place in the run.
+// Threads that the kernel has in its hands, and threads and processes that run without a place in
+// the run.
 #pragma once
 
 #include "coordinator/engine/engine_part.h"
@@ -11,11 +12,11 @@ class UnseenThreads : public EnginePart {
  public:
   using EnginePart::EnginePart;
 
-  // Those that the kernel holds no longer are ready again.
+  // Threads that the kernel holds no longer are ready again.
   void Poll();
   // The kernel no longer holds the thread, which was kUnseen.
   void ComeBack(Task& task, EventTime when);
-  // Threads or processes that never registered are at work, or the kernel is at somebody's end:
+  // Threads or processes that never registered are at work, or the kernel is about to end a thread:
   // time waits for them.
   bool UnregisteredRun();
 };

@@ -1,5 +1,5 @@
-// The parts of a run, and how they know of each other. No logic: what happens is the parts' own
-// business. They are made in this order, and go in the reverse one.
+// The parts of a run, and how they know of each other. No logic: the parts themselves decide what
+// happens. The parts are made in this order, and go in the reverse one.
 #pragma once
 
 #include <memory>
@@ -104,7 +104,7 @@
 
 namespace tcs {
 
-// What the host permits, which decides how a run keeps its threads apart.
+// The permissions of the host, which decide how a run keeps its threads apart.
 struct HostPermits {
   RealTimeFacts real_time;
   bool duplicates = true;  // pidfd_getfd
@@ -137,7 +137,7 @@ struct Wiring {
                        }};
   TurnsBeside beside{{run, *executor, clock, ahead, records},
                      [this](EventTime when) { return event_pump.Poll(EventPump::kNoWait, when); }};
-  // What programs ask for, and what they wait for.
+  // The calls of programs, and their waits.
   PriorityInheritance inheritance{run, waker};
   DdsGateway dds{run, waker, world, inheritance};
   SchedulingCalls scheduling{run, waker, inheritance};
@@ -170,7 +170,7 @@ struct Wiring {
   RosDaemon ros_daemon{run, peers};
   GuardedCalls guard;
 
-  // Who takes part: how threads and processes come, and how they go.
+  // The threads and processes that take part: how they come, and how they go.
   SlotCheck slot_check{run.IsFixed(), [this] { return clock.NsAt(host_cpu.stop_tsc()); }};
   UsageBook usage{run.table, slot_check};
   ProtocolViolations violations{run, waker, host_cpu};
@@ -221,14 +221,14 @@ struct Wiring {
   KeptCalls kept_calls{waker, descriptors};
   AfterCalls after_calls{run, objects, shared_events, signals, signal_wakes, spawns};
 
-  // What they notify.
+  // The notifications of programs.
   Notifications notifications{
       run,
       waker,
       {violations, descriptors, unregistered_children, timers, spawns, scheduling, signals, objects,
        dds, local_sockets, outside, spins, dates}};
 
-  // What users are told.
+  // The messages to users.
   DebuggerHold debugger{run};
   StandstillWatch standstill{run, unregistered, unregistered_children};
   RunReporter reporter{run,
@@ -243,7 +243,8 @@ struct Wiring {
   shm::RunMemory* memory = nullptr;
   UniqueFd memfd;
 
-  // The engine's own parts, which reach all others: what each does is said where it is declared.
+  // The engine's own parts, which reach all others: the declaration of each part says what the part
+  // does.
   HomeProcessor home_processor;
   EndRequests end_requests;
   GateKeeper gate_keeper{*this};

@@ -30,7 +30,7 @@ std::string ValueText(double value, MeasureUnit unit) {
   return fmt::format("{:.6g}", value);
 }
 
-// What rounding would make look like the bound is told in full.
+// A value that rounding would make look like the bound is told in full.
 std::string ValueBeside(double value, const ExpectationSpec& expected) {
   const std::string text = ValueText(value, expected.unit);
   for (const double limit : {expected.least, expected.most}) {
@@ -151,7 +151,7 @@ class Judge {
   [[nodiscard]] Judgement OfMeasure(const ExpectationSpec& expected) const {
     Judgement judgement{.expected = expected};
     const Measure* measure = Find(expected);
-    // Zero misses of no judged activation are not known to be none.
+    // Where no activation was judged, zero misses are not known to be none.
     const bool is_judged =
         !expected.figure.starts_with("miss") || expected.figure == "missed" ||
         measures_.contains(expected.measure.substr(0, expected.measure.rfind('.')) + ".missed");

@@ -14,18 +14,20 @@ namespace tcs {
 struct Judgement {
   ExpectationSpec expected;
   bool holds = false;
-  // What it was; of what is looked at all the while, from `value` to `largest`. None: not known.
+  // The figure's value; for a figure that is looked at all the while, its range from `value` to
+  // `largest`. None: not known.
   std::optional<double> value, largest;
   std::int64_t first_time_ns = -1;  // of the first miss or breach; -1: there is none, or not known
   std::string what;                 // "misses was 17, expected at most 0, first at 0.310 s"
 };
 
-// Of each expectation, in their order. `summary` is the text of the run's summary.json, `kept` are
-// the figures of Scenario::kept. What is not known does not hold.
+// The judgement of each expectation, in their order. `summary` is the text of the run's
+// summary.json, `kept` are the figures of Scenario::kept. An expectation whose figure is not known
+// does not hold.
 [[nodiscard]] std::vector<Judgement> JudgeRun(const std::vector<ExpectationSpec>& expectations,
                                               const std::string& summary, const MetricsOfRun& kept);
 
-// Those that do not hold: first those with a time, the earliest first.
+// The judgements that do not hold: first those with a time, the earliest first.
 [[nodiscard]] std::vector<const Judgement*> Failed(const std::vector<Judgement>& judgements);
 
 // "body drone: z …", and where it is expected.

@@ -9,7 +9,7 @@ namespace tcs {
 
 namespace {
 
-// How many bytes the well-formed character of UTF-8 at the beginning has; 0: it is none.
+// The length in bytes of the well-formed character of UTF-8 at the beginning; 0: there is none.
 std::size_t CharacterLength(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);

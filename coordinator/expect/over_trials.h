@@ -1,4 +1,4 @@
-// Whether trials came to what their scenario expects: each bound in its share of them. Pure.
+// Whether trials came to what their scenario expects, each bound in its share of the trials. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,17 @@
 
 namespace tcs {
 
-// Of one expectation, in one group of trials.
+// The judgement of one expectation, in one group of trials.
 struct TrialsJudgement {
   ExpectationSpec expected;
-  std::string group;  // its label
+  std::string group;  // the group's label
   std::int64_t held = 0, trials = 0;
   std::uint64_t first_seed = 0;  // of the first trial in which it did not hold
   std::string what;              // of that trial: "misses was 17, expected at most 0"
 
   [[nodiscard]] ShareInterval Interval() const { return ClopperPearson(held, trials); }
-  // The share of these trials is the wanted one at least. Of none it is not.
+  // True if the share of trials in which the expectation held is the wanted one at least. False
+  // without trials.
   [[nodiscard]] bool Holds() const;
 };
 

@@ -9,7 +9,7 @@ namespace {
 constexpr double kTail = 0.025;  // of 95 %, on either side
 constexpr int kHalvings = 60;
 
-// The probability that `most` or fewer of `trials` hold, where each does with probability p.
+// The probability that `most` or fewer of `trials` hold, where each trial does with probability p.
 double AtMost(std::int64_t most, std::int64_t trials, double p) {
   if (most >= trials || p <= 0) return 1;
   if (p >= 1) return 0;
@@ -24,7 +24,7 @@ double AtMost(std::int64_t most, std::int64_t trials, double p) {
   return sum;
 }
 
-// The p at which AtMost falls to `probability`; it falls as p grows.
+// The p at which AtMost falls to `probability`; AtMost falls as p grows.
 double WhereAtMostIs(double probability, std::int64_t most, std::int64_t trials) {
   double low = 0, high = 1;
   for (int i = 0; i < kHalvings; ++i) {

@@ -106,7 +106,7 @@ std::vector<Part> PartsOf(const Activation& activation,
 
 std::string SentenceOn(const Activation& activation, const std::map<std::string, Client>& clients) {
   std::vector<Cause> causes = CausesOf(activation, clients);
-  // Its own work alone would have been done in time.
+  // The activation's own work alone would have been done in time.
   if (activation.LateNs() > 0 && activation.executed_ns <= activation.deadline_ns &&
       causes.size() > 1)
     std::erase_if(causes, [](const Cause& cause) { return cause.kind == Kind::kExecuted; });
@@ -173,7 +173,7 @@ const Activation* QueuedBehind(const Told& told, const Activation& activation) {
 
 namespace {
 
-// Of each activation the first of the queue that it was in; itself, if it was in none.
+// For each activation the first one of the queue that it was in; itself, if it was in none.
 std::map<const Activation*, const Activation*> FirstsOfQueues(const Told& told) {
   std::map<std::pair<std::string_view, std::int64_t>, const Activation*> before;
   std::map<const Activation*, const Activation*> firsts;
@@ -186,7 +186,7 @@ std::map<const Activation*, const Activation*> FirstsOfQueues(const Told& told) 
   return firsts;
 }
 
-// What waited behind another one that is named tells nothing new: such come last.
+// An activation that waited behind another one that is named tells nothing new, and comes last.
 void PutOneOfEachQueueFirst(const Told& told, std::vector<const Activation*>* chosen) {
   auto firsts = FirstsOfQueues(told);
   std::set<const Activation*> named;

@@ -91,7 +91,7 @@ std::map<std::string, Chain> ReadChains(const json& summary) {
   return chains;
 }
 
-// Among clients of a robot with `scheduler: edf` it says little.
+// Among clients of a robot with `scheduler: edf` a priority says little.
 std::optional<std::int64_t> PriorityOf(const json& summary, const json& client) {
   const auto robots = summary.find("robots");
   if (robots != summary.end() && robots->is_object()) {
@@ -117,7 +117,7 @@ std::map<std::string, Client> ReadClients(const json& summary) {
 }  // namespace
 
 LoadResult<Told> ReadTold(const std::string& folder) {
-  // Of a run that was cut off there is no summary; then nothing is known of priorities.
+  // A run that was cut off has no summary; then nothing is known of priorities.
   const json summary = json::parse(ReadFile(folder + "/summary.json").value_or(""), nullptr, false);
   Told told{.chains = ReadChains(summary), .clients = ReadClients(summary)};
   const bool is_whole = !told.clients.empty();
@@ -131,7 +131,7 @@ LoadResult<Told> ReadTold(const std::string& folder) {
                               if (!is_whole && activation->deadline_ns > 0)
                                 client.has_deadline = true;
                               if (activation->end_ns <= client.counted_after_ns) return true;
-                              // A client of which nobody expects that it keeps a period.
+                              // Nobody expects such a client to keep a period.
                               if (!client.has_deadline) activation->deadline_ns = 0;
                               told.activations.push_back(std::move(*activation));
                               return true;

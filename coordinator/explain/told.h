@@ -1,5 +1,5 @@
-// What a run tells of its clients' activations: responses.csv and summary.json (docs/RESULTS.md).
-// Times are virtual nanoseconds.
+// The results that tell of the activations of a run's clients: responses.csv and summary.json
+// (docs/RESULTS.md). Times are virtual nanoseconds.
 #pragma once
 
 #include <cstdint>
@@ -12,33 +12,33 @@
 
 namespace tcs::explain {
 
-// What one client, or its thread, had of an activation's time.
+// The share that a client, or its thread, had of an activation's time.
 struct Share {
-  std::string client;  // empty: it is not known whose
+  std::string client;  // empty: the client is not known
   std::int64_t ns = 0;
 };
 
-// One activation, and what the time from its release to its end went into.
+// An activation, and the parts of the time from its release to its end.
 struct Activation {
   std::string client;
-  std::int64_t thread = 0;  // 0: its client's first
+  std::int64_t thread = 0;  // 0: the client's first
   std::int64_t release_ns = 0, start_ns = 0, end_ns = 0;
-  std::int64_t deadline_ns = 0;  // from the release; 0: it has none
+  std::int64_t deadline_ns = 0;  // from the release; 0: there is none
   std::int64_t queued_ns = 0, away_ns = 0, executed_ns = 0, room_ns = 0, rest_ns = 0;
-  std::vector<Share> cores, locks;  // who had most first
+  std::vector<Share> cores, locks;  // the client with the most first
 
   std::int64_t TookNs() const { return end_ns - release_ns; }
   std::int64_t LateNs() const { return deadline_ns > 0 ? TookNs() - deadline_ns : 0; }
 };
 
 struct Client {
-  std::optional<std::int64_t> priority;  // none where deadlines order threads, or nobody tells
+  std::optional<std::int64_t> priority;  // none: deadlines order threads, or it is not told
   bool has_deadline = false;
-  // What ended until then was its start.
+  // Activations that ended until then were the client's start.
   std::int64_t counted_after_ns = -1;
 };
 
-// One part of a sample's way, in the order of the way.
+// A part of a sample's way. Parts are in the order of the way.
 struct Hop {
   std::string of;    // as summary.json says it: sensor, waiting, program, held, way or actuator
   std::string name;  // of the channel or the client
@@ -52,7 +52,7 @@ struct ChainCase {
 };
 
 struct Chain {
-  std::int64_t deadline_ns = 0;  // 0: it has none
+  std::int64_t deadline_ns = 0;  // 0: there is none
   std::int64_t commands = 0, missed = 0;
   std::vector<ChainCase> worst;  // the oldest first
 };

@@ -9,7 +9,7 @@ namespace tcs::fit {
 namespace {
 
 constexpr double kAllocationPerCall = 2;  // as the costs are unless told
-// Other costs than in that proportion must be better by so much of the misfit.
+// The misfit of costs in another proportion must be below this share of the usual costs' misfit.
 constexpr double kClearlyBetter = 0.98;
 
 struct Unrounded {
@@ -24,7 +24,7 @@ double Misfit(const Unrounded& costs, const std::vector<Work>& activations) {
   return sum;
 }
 
-// Where half of the weights lie below; none for none.
+// The value below which half of the weights lie; none without values.
 std::optional<double> WeightedMedian(std::vector<std::pair<double, double>> values_and_weights) {
   std::sort(values_and_weights.begin(), values_and_weights.end());
   double all = 0, below = 0;
@@ -36,7 +36,8 @@ std::optional<double> WeightedMedian(std::vector<std::pair<double, double>> valu
   return {};
 }
 
-// Those of the costs that meet the whole charge and are none below 0. It has calls and allocations.
+// The best of the costs that meet the whole charge and are not below 0. `whole` has calls and
+// allocations.
 Unrounded Best(const Work& whole, const std::vector<Work>& activations) {
   const auto with = [&whole](double allocation_ns) {
     const double rest = whole.charged_ns - allocation_ns * whole.allocations;
@@ -61,7 +62,8 @@ Unrounded Best(const Work& whole, const std::vector<Work>& activations) {
 
 std::int64_t Whole(double ns) { return static_cast<std::int64_t>(std::llround(ns)); }
 
-// In whole nanoseconds: of those next to it the ones that meet the whole charge best.
+// The costs in whole nanoseconds: of the two roundings of the allocation's cost, the one that meets
+// the whole charge best.
 Costs Rounded(const Unrounded& costs, const Work& whole) {
   Costs best;
   double least = INFINITY;

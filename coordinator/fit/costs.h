@@ -16,26 +16,27 @@
 
 namespace tcs::fit {
 
-// Of an activation, or of a client's whole run. None is negative.
+// The work of an activation, or of a client's whole run. No value is negative.
 struct Work {
   double charged_ns = 0;  // virtual processor time
   double calls = 0, allocations = 0;
 };
 
-// What the scenario is to say. None where the run had nothing that such a cost could be of.
+// The costs that the scenario is to state. A cost is none where the run had no calls, or no
+// allocations, that it could be of.
 struct Costs {
   std::optional<std::int64_t> call_ns;        // 1 or more
   std::optional<std::int64_t> allocation_ns;  // 0 or more
 
-  // What fixed accounting charges for it.
+  // The charge that fixed accounting makes for `work`.
   [[nodiscard]] double ChargeOf(const Work& work) const;
 };
 
-// `whole` is of the whole run, in which there may be more than the `activations` tell of.
+// `whole` is the work of the whole run, which may be more than the `activations` tell of.
 [[nodiscard]] Costs FitCosts(const Work& whole, const std::vector<Work>& activations);
 
-// The share of what the activations were charged that `costs` put into the wrong ones, or into
-// none: 0 where each is met. 0 for none.
+// The share of the activations' charges that `costs` put into the wrong activations, or into none:
+// 0 where each charge is met. 0 without activations.
 [[nodiscard]] double MisfitOf(const Costs& costs, const std::vector<Work>& activations);
 
 }  // namespace tcs::fit

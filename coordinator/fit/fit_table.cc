@@ -12,10 +12,11 @@ namespace tcs::fit {
 
 namespace {
 
-// So much of it in other activations than it was measured in: hardly more than sums agree.
+// With this share of the charge in other activations than it was measured in, hardly more than the
+// sums agree.
 constexpr double kLargeMisfit = 0.8;
-// From one call or allocation to the next, on average. A robot's programs are woken every 1 to
-// 20 ms, and notice such steps.
+// The time from one call or allocation to the next, on average. A robot's programs are woken every
+// 1 to 20 ms, and notice such steps.
 constexpr double kLongStepNs = 1e6;
 
 // "1.86 us"; for a terminal, so without spaces that do not break.
@@ -35,7 +36,7 @@ std::string Both(double measured_ns, double fitted_ns) {
   return Ns(measured_ns) + " | " + Ns(fitted_ns);
 }
 
-// In their order, what was measured and what the costs charge.
+// The measured charges and those of the costs, each in their order.
 struct Charges {
   std::vector<double> measured, fitted;
 };

@@ -1,4 +1,4 @@
-// What `tcsim fit` says: each client's costs, and what they charge beside what was measured.
+// The output of `tcsim fit`: each client's costs, and what these charge beside what was measured.
 #pragma once
 
 #include <string>
@@ -14,13 +14,13 @@ struct ClientFit {
   Costs costs;
 };
 
-// Of all clients, in the order of their names.
+// The fits of all clients, in the order of their names.
 [[nodiscard]] std::vector<ClientFit> FitAll(const MeasuredRun& run);
 
 // For a terminal; ends with a line's end.
 [[nodiscard]] std::string FitTable(const MeasuredRun& run, const std::vector<ClientFit>& fits);
 
-// One sentence for each client whose computing its calls and allocations do not tell.
+// One sentence for each client whose calls and allocations do not tell how long it computes.
 [[nodiscard]] std::vector<std::string> FitWarnings(const MeasuredRun& run,
                                                    const std::vector<ClientFit>& fits);
 

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Far more than any run has, and so little that sums of it are numbers yet.
+// More than any run has by far, and so little that sums of such values are numbers yet.
 constexpr double kMost = 1e18;
 
 std::optional<double> ToCount(std::string_view text) {

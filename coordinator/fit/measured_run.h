@@ -1,4 +1,4 @@
-// What a result folder tells of what its clients did and were charged: summary.json and
+// The work and the charges of a run's clients, as its result folder tells them: summary.json and
 // activations.csv of `tcsim run --for-fit`.
 #pragma once
 
@@ -12,9 +12,9 @@
 namespace tcs::fit {
 
 struct MeasuredClient {
-  double speed = 1;  // of its robot, to the host's
+  double speed = 1;  // of the client's robot, to the host's
   Work whole;
-  std::vector<Work> activations;  // that had ended by the run's end
+  std::vector<Work> activations;  // all that had ended by the run's end
 };
 
 struct MeasuredRun {

@@ -13,7 +13,7 @@
 namespace tcs::gateway {
 
 struct Frame {
-  std::uint32_t end = 0;          // the place of its topic on the command line
+  std::uint32_t end = 0;          // the place of the sample's topic on the command line
   std::int64_t timestamp_ns = 0;  // DDS's source timestamp
   std::vector<std::byte> cdr;
 };
@@ -23,7 +23,7 @@ class Frames {
   // A stream socket, which stays open.
   explicit Frames(int fd) : fd_(fd) {}
 
-  // From any thread. False: there is nobody at the other end any more.
+  // Callable from any thread. False: there is nobody at the other end any more.
   bool Send(std::uint32_t end, std::int64_t timestamp_ns, std::span<const std::byte> cdr);
   // For one thread, which waits. None: there is nobody at the other end any more.
   std::optional<Frame> Receive();

@@ -80,7 +80,7 @@ std::vector<gateway::ServedEnd> EndsOf(const Scenario& scenario) {
   return ends;
 }
 
-// As the programs that it is to meet have it.
+// The gateway's configuration of Cyclone: that of the programs that the gateway is to meet.
 std::string ConfigurationFor(const ClientSpec& client) {
   const auto own = client.environment.find(kConfiguration);
   const char* inherited = getenv(kConfiguration);
@@ -107,7 +107,7 @@ std::optional<RobotSpec> GatewayRobot(const Scenario& scenario, const std::strin
   for (const gateway::ServedEnd& end : ends) client.command.push_back(ToText(end));
   client.working_directory = "/";
   client.environment[kConfiguration] = ConfigurationFor(*by_sockets);
-  client.stop_signal = SIGKILL;  // it has nothing to write, and nobody to tell
+  client.stop_signal = SIGKILL;  // the gateway has nothing to write, and nobody to tell
   RobotSpec robot;
   robot.name = "tcsim";
   robot.clients.push_back(std::move(client));

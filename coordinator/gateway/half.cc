@@ -12,7 +12,7 @@ namespace tcs::gateway {
 namespace {
 
 constexpr int kTakenAtOnce = 16;
-// ROS 2's middleware takes participants that say so for its own kind, with nodes.
+// ROS 2's middleware takes participants with this user data for its own kind, with nodes.
 constexpr const char* kEnclave = "enclave=/;";
 
 void SetQos(dds_qos_t* to, const ServedEnd& end, Side side) {
@@ -109,7 +109,7 @@ void Half::Add(const ServedEnd& end, Heard* heard) {
   (Reads(end) ? node->readers : node->writers).push_back(guid);
 }
 
-// In the thread that hands samples over: nobody has to wake up for them.
+// Runs in the thread that hands samples over: no other thread has to wake up for them.
 void Half::TakeAll(dds_entity_t reader, void* of) {
   const Heard& heard = *static_cast<const Heard*>(of);
   ddsi_serdata* samples[kTakenAtOnce];

@@ -1,8 +1,9 @@
-// One of the gateway's two processes, as DDS sees it: a reader or a writer for each topic. What its
-// readers get goes into the stream to the other process, and what comes from there is written.
+// One of the gateway's two processes, as DDS sees it: a reader or a writer for each topic. The
+// samples that its readers get go into the stream to the other process, and its writers write the
+// samples that come from there.
 //
-// Samples are carried as CDR, with their timestamps; nothing here looks into them. What this
-// process itself writes its readers do not get, so nothing goes round.
+// Samples are carried as CDR, with their timestamps; nothing here looks into them. The readers do
+// not get what this process itself writes, so nothing goes round.
 #pragma once
 
 #include <dds/dds.h>
@@ -25,8 +26,8 @@ enum class Side {
 
 class Half {
  public:
-  // Exits with a sentence on stderr where DDS refuses something. All of it outlives the process's
-  // threads: a half lives until the process ends.
+  // Exits with a sentence on stderr where DDS refuses something. A half, with all that it has,
+  // outlives the process's threads: it lives until the process ends.
   Half(Side side, const std::vector<ServedEnd>& ends, Frames& frames);
 
   void Write(const Frame& frame);
@@ -43,7 +44,7 @@ class Half {
   const std::map<int, Participant>& participants() const { return participants_; }
 
  private:
-  // What a listener is told of.
+  // The argument of a listener's calls.
   struct Heard {
     Half* half = nullptr;
     std::uint32_t end = 0;

@@ -4,9 +4,10 @@
 //   tcs-dds-gateway humble|iron USER_DATA END...
 //
 // USER_DATA is that of the endpoint that announces nodes; an END is of served_end.h. One process of
-// it meets the simulation in shared memory, as any DDS program of a run. Its child does so by
-// sockets: tcsim has children of the gateway use these (processes/thread_creation.cc). Between them
-// is a stream of samples. Both are killed at the run's end.
+// the gateway meets the simulation in shared memory, as any DDS program of a run. Its child meets
+// the programs by sockets: tcsim has children of the gateway use these
+// (processes/thread_creation.cc). Between the two processes is a stream of samples. Both processes
+// are killed at the run's end.
 #include <dds/ddsrt/log.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,6 +76,6 @@ int main(int argc, char** argv) {
                                 strcmp(argv[2], "-") == 0 ? "" : argv[2]);
   }
   while (const auto frame = frames.Receive()) half.Write(*frame);
-  // The other one has ended, which it does only with the run, or because of an error.
+  // The other process has ended, which it does only with the run, or because of an error.
   _Exit(1);
 }

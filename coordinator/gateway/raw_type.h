@@ -12,13 +12,13 @@
 
 namespace tcs::gateway {
 
-// By DDS's name. The caller owns it, until a topic takes it over.
+// A type of that DDS name. The caller owns it, until a topic takes it over.
 [[nodiscard]] ddsi_sertype* NewRawType(const std::string& name);
 
 // A sample of such a type: CDR with its four bytes of encapsulation. The caller owns it.
 [[nodiscard]] ddsi_serdata* NewRawSample(const ddsi_sertype* type, std::span<const std::byte> cdr,
                                          std::int64_t timestamp_ns);
-// As long as the sample lives.
+// The sample's bytes, valid as long as the sample lives.
 [[nodiscard]] std::span<const std::byte> BytesOf(const ddsi_serdata* sample);
 
 }  // namespace tcs::gateway

@@ -22,7 +22,7 @@ void Put(const std::vector<dds_guid_t>& guids, Sequence* sequence) {
 template <class Message>
 void Announce(const Half::Participant& participant, const std::string& user_data) {
   const dds_topic_descriptor_t& type = dds::DescriptorOf<Message>();
-  // Both forms have one name.
+  // Both forms of the message have one name.
   dds_topic_descriptor_t named = type;
   named.m_typename = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
   const dds_entity_t topic =

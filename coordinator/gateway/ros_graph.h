@@ -1,5 +1,5 @@
-// What ROS 2's graph tools are told by sockets: which of the gateway's endpoints belong to which of
-// the simulation's nodes, as they are told in shared memory (channel/dds/ros_nodes.h).
+// Tells ROS 2's graph tools by sockets which of the gateway's endpoints belong to which of the
+// simulation's nodes, as channel/dds/ros_nodes.h tells it in shared memory.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace tcs::gateway {
 
-// In each domain, also to programs that join later. `is_humble`: in the form of ROS 2 Humble.
-// `user_data`: of the endpoints that say it.
+// Announces the nodes in each domain, also to programs that join later. `is_humble`: in the form of
+// ROS 2 Humble. `user_data`: that of the endpoints that announce them.
 void AnnounceNodes(const Half& half, bool is_humble, const std::string& user_data);
 
 }  // namespace tcs::gateway

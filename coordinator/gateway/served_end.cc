@@ -20,7 +20,7 @@ std::optional<VirtualDuration> DurationIn(const std::string& word) {
 
 }  // namespace
 
-// No name in it has a space.
+// No name in `end` has a space.
 std::string ToText(const ServedEnd& end) {
   std::ostringstream text;
   const dds::Qos& qos = end.qos;

@@ -1,5 +1,5 @@
 // A topic of the scenario's as the gateway serves it, and as it stands on the gateway's command
-// line: one argument for each. tcsim writes them, the gateway reads them. Pure.
+// line: one argument for each. tcsim writes the arguments, the gateway reads them. Pure.
 #pragma once
 
 #include <optional>

@@ -1,9 +1,9 @@
-// Which threads may run on one processor of the host: the one that was dispatched last, which keeps
-// that right until another one is dispatched or it is held; the one that it is lent to; and those
-// that are to end.
+// Which threads may run on one processor of the host: the thread that was dispatched last, which
+// keeps that right until another thread is dispatched or it is held; the thread to which the
+// processor is lent; and the threads that are to end.
 //
-// Each change costs a system call, so none is made that changes nothing. Threads are the caller's,
-// who says when one has ended. For the coordinator's thread only.
+// Each change costs a system call, so this class makes no change that changes nothing. The threads
+// belong to the caller, who says when one of them has ended. For the coordinator's thread only.
 #pragma once
 
 #include <utility>
@@ -17,15 +17,16 @@ class ActiveThreads {
  public:
   explicit ActiveThreads(Executor& executor) : executor_(executor) {}
 
-  // The thread is dispatched. The last one is held, unless it is at its gate: there it needs no
-  // hold, and has the right already when it is dispatched next.
+  // The thread is dispatched. The thread before it is held, unless that thread is at its gate:
+  // there it needs no hold, and it has the right already at its next dispatch.
   void Dispatch(HostThread& thread) {
     if (last_ != &thread) HoldLast();
     if (!thread.may_run) LetRun(thread);
     last_ = &thread;
   }
 
-  // Beside the one that was dispatched. Also of a thread of which it is not known what it may.
+  // Lets the thread run beside the dispatched one. Also for a thread of which it is not known
+  // whether it may run.
   void LetRun(HostThread& thread) {
     executor_.LetRun(thread.tid);
     thread.may_run = true;
@@ -34,7 +35,8 @@ class ActiveThreads {
   void Hold(HostThread& thread) {
     if (thread.may_run) HoldUnknown(thread);
   }
-  // One that the coordinator has just learnt of: it may what the one may that has made it.
+  // For a thread of which the coordinator has just learnt: it may run if the thread that created it
+  // may run.
   void HoldUnknown(HostThread& thread) {
     executor_.Hold(thread.tid);
     thread.may_run = false;
@@ -44,7 +46,7 @@ class ActiveThreads {
     thread.may_run = false;
   }
 
-  // To one thread at a time, which is held again by TakeBack.
+  // Lends the processor to one thread at a time, which is held again by TakeBack.
   void Lend(HostThread& thread) {
     TakeBack();
     LetRun(thread);
@@ -55,7 +57,8 @@ class ActiveThreads {
   }
   bool is_lent() const { return lent_ != nullptr; }
 
-  // Who was dispatched last runs no more, where the coordinator is about to sleep.
+  // The thread that was dispatched last does not run any more, where the coordinator is about to
+  // sleep.
   void HoldLast() {
     if (last_ != nullptr && !last_->parked) Hold(*last_);
   }

@@ -28,7 +28,7 @@ constexpr std::int64_t kLeftBesideNs = 2'000'000;
 constexpr int kMostDoublingsBeside = 8;
 constexpr std::uint32_t kNobody = UINT32_MAX;  // to be sent home: the warden ends
 constexpr std::uint32_t kSends = 1u << 31;
-// So long the opener may take before it is helped: a system call.
+// The opener may take so long before the coordinator helps it, by a system call.
 constexpr std::int64_t kMostOpenNs = 100'000;
 
 }  // namespace
@@ -44,7 +44,7 @@ BesideCpu::BesideCpu(int cpu, int home, double ticks_per_ns, Executor& executor,
 BesideCpu::~BesideCpu() {
   ends_.store(true);
   awake_until_tsc_.store(0);
-  // Other words than those at which the two are about to sleep, perhaps.
+  // Other values than those at which the opener and the warden are about to sleep, perhaps.
   sleeps_.store(0);
   sends_.store(kNobody);
   Wake(sleeps_);
@@ -75,7 +75,7 @@ void BesideCpu::Start() {
 }
 
 void BesideCpu::OpenGates() {
-  // In this order: at home, with any lower priority, it would wait for long to get there.
+  // In this order: at home, with any lower priority, the opener would wait for long to get here.
   BindTo(0, cpu_);
   LeaveRealTime(0);
   RunOnlyWhenIdle();
@@ -89,7 +89,7 @@ void BesideCpu::OpenGates() {
   }
 }
 
-// The thread runs instead of this one, and this one again once the thread has stopped.
+// The thread runs instead of the opener, and the opener runs again once the thread has stopped.
 bool BesideCpu::OpenNext() {
   if (asked_.load(std::memory_order_acquire) == opened_) return false;
   opens_.store(true);
@@ -103,10 +103,10 @@ void BesideCpu::SendHomeWhenAsked() {
   BindTo(0, cpu_);
   while (!ends_.load()) {
     std::uint32_t tid = sends_.load();
-    // The coordinator may have sent it home itself by now, and want another one there.
+    // The coordinator may have sent the thread home itself by now, and want another thread there.
     const bool is_asked = tid != 0 && tid != kNobody;
     if (is_asked && sends_.compare_exchange_strong(tid, tid | kSends)) {
-      // It does not run meanwhile.
+      // The thread does not run meanwhile.
       executor_.Hold(static_cast<pid_t>(tid));
       BindTo(static_cast<pid_t>(tid), home_);
       std::uint32_t sent = tid | kSends;
@@ -140,7 +140,7 @@ void BesideCpu::NoteWanted(std::uint64_t tsc) {
 bool BesideCpu::Begin(HostThread& thread) {
   if (!warden_.joinable()) Start();
   if (!thread.is_beside) {
-    // It sleeps at its gate, so that neither takes time.
+    // The thread sleeps at its gate, so that neither step takes time.
     if (!BindTo(thread.tid, cpu_)) {
       not_before_tsc_ = UINT64_MAX;
       return false;
@@ -163,7 +163,7 @@ bool BesideCpu::Begin(HostThread& thread) {
   return true;
 }
 
-// False if its gate is open, or about to be.
+// False if the thread's gate is open, or about to be.
 bool BesideCpu::TakeBack(const HostThread& thread) {
   bool is_back = false;
   for (std::atomic<shm::ThreadSlot*>& gate : gates_) {
@@ -196,8 +196,8 @@ bool BesideCpu::GiveUp(HostThread& thread) {
   if (TakeBack(thread)) {
     thread.parked = true;
   } else {
-    // It may have been kept from the processor with the gate half open: a thread that sleeps on at
-    // an open gate would be taken for one that the kernel holds.
+    // The opener may have been kept from the processor with the gate half open: a thread that
+    // sleeps on at an open gate would be taken for one that the kernel holds.
     AwaitOpener();
   }
   Saying runs = Saying::kRuns;
@@ -207,8 +207,8 @@ bool BesideCpu::GiveUp(HostThread& thread) {
   return true;
 }
 
-// Others may have its processor, where it runs only when nobody else does: then it goes before
-// them until it is done.
+// Other threads may have the opener's processor, where the opener runs only when no other thread
+// does: then the opener goes before them until it is done.
 void BesideCpu::AwaitOpener() {
   const std::uint64_t until_tsc = HostTsc() + TicksIn(kMostOpenNs);
   bool is_helped = false;
@@ -225,7 +225,7 @@ void BesideCpu::AwaitOpener() {
 
 void BesideCpu::Forget(HostThread& thread) {
   TakeBack(thread);
-  // Its slot goes with it.
+  // The thread's slot goes with the thread.
   AwaitOpener();
   thread.turns_beside = false;
   --begun_;
@@ -243,17 +243,19 @@ void BesideCpu::BringHome(HostThread& thread) {
   const std::uint64_t until_tsc = HostTsc() + TicksIn(kMostWayBackNs);
   while (sends_.load() == asked && HostTsc() < until_tsc) _mm_pause();
   if (sends_.compare_exchange_strong(asked, 0)) {
-    // The kernel holds the one that was asked.
+    // The kernel holds the warden, which was asked.
     executor_.Hold(thread.tid);
     BindTo(thread.tid, home_);
     return;
   }
-  // It has begun, and was held in the midst of it, perhaps: nobody else may touch the thread.
+  // The warden has begun, and was held in the midst of it, perhaps: nothing else may touch the
+  // thread.
   while (sends_.load() != 0) _mm_pause();
 }
 
 void BesideCpu::LeaveToOthers(std::uint64_t tsc) {
-  // What was of use for longer than it had been left to others begins anew.
+  // The count begins anew for a processor that was of use for longer than it had been left to
+  // others.
   if (tsc > not_before_tsc_ + left_ticks_) left_to_others_ = 0;
   left_ticks_ = TicksIn(kLeftBesideNs << std::min(left_to_others_++, kMostDoublingsBeside));
   not_before_tsc_ = tsc + left_ticks_;

@@ -1,6 +1,6 @@
-// What the coordinator has written into a thread's clock page: how the thread's clock runs, and how
-// far it can come by itself. The page is shared with the thread's process, which may overwrite it;
-// this is the coordinator's own copy.
+// The values that the coordinator has written into a thread's clock page: how the thread's clock
+// runs, and how far it can come by itself. The page is shared with the thread's process, which may
+// overwrite it; this is the coordinator's own copy.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ struct ClockGrant {
 
   // Copies the fields that are the coordinator's.
   void WriteTo(shm::ClockPage& page) const;
-  // False if one of them is another by now.
+  // False if one of these fields has another value by now.
   bool StandsIn(const shm::ClockPage& page) const;
-  // May be called again with others in the same dispatch.
+  // May be called again with other limits in the same dispatch.
   void NoteLimits();
 };
 

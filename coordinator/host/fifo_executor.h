@@ -1,5 +1,5 @@
-// By real-time priorities, as the paper does it: all of a run share one processor under SCHED_FIFO,
-// and whoever may run has the level above the others' (port/levels.h).
+// By real-time priorities, as the paper does it: all threads of a run share one processor under
+// SCHED_FIFO, and a thread that may run has the level above the others' (port/levels.h).
 #pragma once
 
 #include "coordinator/host/executor.h"
@@ -11,7 +11,7 @@ class FifoExecutor final : public Executor {
  public:
   void LetRun(pid_t tid) override { SetLevel(tid, Level::kActive); }
   void Hold(pid_t tid) override { SetLevel(tid, Level::kWaiting); }
-  // Above the coordinator, so that nobody runs meanwhile who is not to.
+  // The thread runs above the coordinator, so that no thread runs meanwhile that is not to.
   void LetKernelFinish(pid_t tid) override {
     SetLevel(tid, Level::kKernelOnly);
     SetLevel(tid, Level::kWaiting);

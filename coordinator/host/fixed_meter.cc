@@ -9,7 +9,7 @@ namespace tcs {
 
 namespace {
 
-// The timer and the thread's CPU clock do not agree to this.
+// The timer and the thread's CPU clock do not agree more closely than this.
 constexpr HostDuration kLeastLook = HostDuration::Microseconds(50);
 
 void Charge(shm::ClockPage& page, VirtualDuration cost) {
@@ -20,8 +20,8 @@ void Charge(shm::ClockPage& page, VirtualDuration cost) {
   }
 }
 
-// What it has been charged since it was looked at last is of calls and allocations: they break the
-// silence, whether they take it to its horizon or not. Sleeping costs a call, too.
+// Every charge since the last look at the thread is for calls and allocations: such a charge breaks
+// the silence, whether it takes the thread to its horizon or not. Sleeping costs a call, too.
 bool HasMadeCalls(MeteredThread& thread, const shm::ClockReading& now) {
   return std::exchange(thread.silent_cpu_ns, now.cpu_ns) != now.cpu_ns;
 }
@@ -67,7 +67,7 @@ Meter::Found FixedMeter::LookAtSilent(MeteredThread& thread, const shm::ClockRea
     Charge(*thread.page, kSilentCost);
     thread.silent_cpu_ns += kSilentCost.ns();
     silent -= kLookAtSilentEvery;
-    // It ran for longer while the coordinator did not look: that is nobody's.
+    // The thread ran for longer while the coordinator did not look: no thread is charged that time.
     if (silent >= kLookAtSilentEvery) silent = {};
     thread.silent_from_ns = cpu_ns - silent.ns();
   }

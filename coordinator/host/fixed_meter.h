@@ -1,12 +1,13 @@
 // Charges a thread set costs for its calls and allocations, which its shim adds to its clock, and
 // nothing for what it computes between them. So no clock of the host matters, and a thread never
-// comes to its horizon by computing: one that spins on what others write to memory would spin for
-// ever. It is looked at now and then, and found silent when it has made no call for long.
+// comes to its horizon by computing: a thread that spins on what others write to memory would spin
+// for ever. The coordinator looks at such a thread now and then, and finds it silent when it has
+// made no call for long.
 //
-// From then on its client computes for long without calls, as is known: a thread of it that has
-// computed for half a millisecond by its own CPU clock since its last call is charged as much, a
-// set cost. So it comes to its horizon as any other thread does. Where between its calls that
-// happens is the host's.
+// From then on the thread's client is known to compute for long without calls: a thread of that
+// client that has computed for half a millisecond by its own CPU clock since its last call is
+// charged as much, a set cost. So the thread comes to its horizon as any other thread does. The
+// host decides where between its calls that happens.
 #pragma once
 
 #include "coordinator/host/meter.h"
@@ -16,7 +17,7 @@ namespace tcs {
 class FixedMeter : public Meter {
  public:
   static constexpr HostDuration kLookEvery = HostDuration::Milliseconds(50);
-  // Of a client that is known for it.
+  // For a client that is known to compute for long without calls.
   static constexpr HostDuration kLookAtSilentEvery = HostDuration::Microseconds(500);
   static constexpr VirtualDuration kSilentCost = VirtualDuration::Microseconds(500);
 

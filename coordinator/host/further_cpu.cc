@@ -69,7 +69,7 @@ void FurtherCpu::Guard() {
   }
 }
 
-// Until it is woken again, after `wakes` times, or that is over.
+// Sleeps until the warden is woken again, after `wakes` times, or `ns` have passed.
 void FurtherCpu::Sleep(std::uint32_t wakes, std::int64_t ns) {
   const timespec timeout = shm::ToTimespec(ns);
   syscall(SYS_futex, &wakes_, FUTEX_WAIT_PRIVATE, wakes, &timeout, nullptr, 0);
@@ -96,8 +96,8 @@ void FurtherCpu::Leave() {
   place_.store(Place::kLeft);
 }
 
-// Sends the thread home that has come to its limit and is not allowed on soon. How long nobody has
-// to be looked after.
+// Sends the thread home that has come to its limit and is not allowed on soon. Returns for how long
+// no thread has to be looked after.
 std::int64_t FurtherCpu::NsToGuard() {
   looks_.store(true);
   std::int64_t left_ns = place_.load() == Place::kHere ? LeftAfterLook() : kForEverNs;
@@ -123,12 +123,13 @@ std::int64_t FurtherCpu::LeftAfterLook() {
   return IsClaimedBy(tsc) ? 0 : allowed_ns_.load() - computed_ns;
 }
 
-// The thread does not compute while this one looks whether it may. Another limit ends that, and so
-// does the coordinator where it takes the thread home, for which it waits until nobody looks.
+// The thread does not compute while the warden looks whether it may. Another limit ends that, and
+// so does the coordinator where it takes the thread home: to do so, the coordinator waits until the
+// warden does not look any more.
 std::int64_t FurtherCpu::LeftAfterRest() {
   const std::uint64_t until_tsc = HostTsc() + TicksIn(kLongestRestNs);
   const std::int64_t limit_ns = allowed_ns_.load();
-  if (limit_ns <= 0) return 0;  // it is wanted at home
+  if (limit_ns <= 0) return 0;  // the thread is wanted at home
   ahead_.Rest();
   while (allowed_ns_.load() == limit_ns && may_rest_.load() && !ends_.load() &&
          place_.load() == Place::kHere && HostTsc() < until_tsc) {
@@ -158,7 +159,7 @@ std::int64_t FurtherCpu::PassedNs(std::uint64_t tsc) const {
   return static_cast<std::int64_t>(static_cast<double>(tsc - since_tsc_) / ticks_per_ns_);
 }
 
-// Since it was sent; negative: it has ended.
+// The time computed since the thread was sent; negative: the thread has ended.
 std::int64_t FurtherCpu::ReadComputed() const {
   return ReadThreadCpuClock(clock_.get()) - begun_ns_;
 }
@@ -171,7 +172,7 @@ bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowe
   const std::int64_t begun_ns = clock ? ReadThreadCpuClock(clock.get()) : -1;
   if (begun_ns < 0) return false;
   if (!warden_.joinable()) StartWarden();
-  // Until it is fetched it does not run where it is.
+  // The thread does not run where it is until it is fetched.
   if (std::exchange(thread.may_run, false)) executor_.Hold(thread.tid);
   thread_ = &thread;
   thread.is_ahead = true;
@@ -199,7 +200,7 @@ bool FurtherCpu::HaveLooked() {
   WakeWarden();
   const std::uint64_t until_tsc = HostTsc() + TicksIn(kMostLookNs);
   while (looked_.load() == looked) {
-    if (Rests() || HasLeft()) return true;  // then it is known
+    if (Rests() || HasLeft()) return true;  // then the computed time is known
     if (HostTsc() >= until_tsc) return false;
     _mm_pause();
   }
@@ -207,13 +208,14 @@ bool FurtherCpu::HaveLooked() {
 }
 
 bool FurtherCpu::IsStarvedBy(std::uint64_t tsc) {
-  // Since it has left nobody looks, however late this process comes to ask.
+  // After the thread has left, the warden does not look any more, however late this process comes
+  // to ask.
   return is_claimed_.load() || ahead_.IsStarvedBy(HasLeft() ? left_at_ns_ : PassedNs(tsc));
 }
 
-// One that has spoken is on its way to sleep. One that computes on is sent home by the warden: the
-// kernel would have this process sleep until a thread that runs elsewhere has stopped, and others
-// would run meanwhile whose turn it is not.
+// A thread that has spoken is on its way to sleep. A thread that computes on is sent home by the
+// warden: the kernel would have this process sleep until a thread that runs elsewhere has stopped,
+// and threads would run meanwhile whose turn it is not.
 void FurtherCpu::AwaitStandstill() const {
   const std::uint64_t sleeps_by_tsc = HostTsc() + TicksIn(kWayToSleepNs);
   while (ThreadState(tid_) == 'R' && HostTsc() < sleeps_by_tsc) _mm_pause();
@@ -226,8 +228,8 @@ void FurtherCpu::HaveSentHome() {
   while (!HasLeft() && HostTsc() < until_tsc) _mm_pause();
 }
 
-// The warden acts on a thread only as long as it is its: it has looked away before the coordinator
-// goes on.
+// The warden acts on a thread only as long as the thread is the warden's: it has looked away before
+// the coordinator goes on.
 void FurtherCpu::TakeBack() {
   Place place = place_.load();
   while (place != Place::kLeft) {
@@ -255,7 +257,8 @@ void FurtherCpu::BringHome() {
 }
 
 void FurtherCpu::LeaveToOthers(std::uint64_t tsc) {
-  // What was of use for longer than it had been left to others begins anew.
+  // The count begins anew for a processor that was of use for longer than it had been left to
+  // others.
   if (tsc > not_before_tsc_ + left_ticks_) left_to_others_ = 0;
   left_ticks_ = TicksIn(kLeftToOthersNs << std::min(left_to_others_++, kMostDoublings));
   not_before_tsc_ = tsc + left_ticks_;

@@ -1,7 +1,7 @@
 // By the threads' own gates, for users who may not have real-time priorities. A thread that waits
-// at its gate runs when that is opened. One that was stopped elsewhere runs on until its next call,
-// which begins at its gate (RunHeader::is_unprivileged); its clock stands still meanwhile. One that
-// computes is sent there by a signal (port/thread_signals.h).
+// at its gate runs when the gate is opened. A thread that was stopped elsewhere runs on until its
+// next call, which begins at its gate (RunHeader::is_unprivileged); its clock stands still
+// meanwhile. A thread that computes is sent to its gate by a signal (port/thread_signals.h).
 #pragma once
 
 #include "coordinator/host/executor.h"
@@ -14,7 +14,8 @@ class GateExecutor final : public Executor {
  public:
   void LetRun(pid_t) override {}
   void Hold(pid_t) override {}
-  // Others may have the processor first. Who computes instead of stopping is not waited for.
+  // Other threads may have the processor first. A thread that computes instead of stopping is not
+  // waited for without end.
   void LetKernelFinish(pid_t tid) override {
     for (int turns = 0; turns < kMostTurns; ++turns) {
       Pause(kTurn);

@@ -14,12 +14,13 @@ namespace {
 // rate.
 constexpr std::uint64_t kLongTicks = 300'000;
 
-// What ways out of gates have not taken others of the thread's may take, but not for ever.
+// Time that some ways out of gates have not taken, others of the thread's may take, but not for
+// ever.
 constexpr HostDuration kMostWays = HostDuration::Milliseconds(2);
 // Signals are let through again on the way.
 constexpr HostDuration kLettingSignals = HostDuration::Microseconds(2);
 
-// While it lives a thread's meter works on another page.
+// While this object lives, a thread's meter works on another page.
 class OnPage {
  public:
   OnPage(MeteredThread& thread, shm::ClockPage* page)
@@ -63,8 +64,8 @@ void HostCpu::Start(HostThread& thread, bool is_silent) {
   if (thread.slot_memory == nullptr) return;
   MeteredThread& metered = thread.metered;
   if (stop_tsc_ - thread.grant.base_tsc > kLongTicks) {
-    // It may have run, and its clock is not to go back. Its CPU clock tells what it had; the run
-    // tells nothing of switches.
+    // The thread may have run, and its clock is not to go back. The thread's CPU clock tells what
+    // it had; the run tells nothing of switches.
     MeterOf(thread).Begin(metered, thread.grant.base_tsc, from_gate_, is_silent);
     metered.unchecked_runs = {};
     return;
@@ -76,19 +77,19 @@ void HostCpu::Start(HostThread& thread, bool is_silent) {
 void HostCpu::StartBeside(HostThread& thread, std::uint64_t tsc) {
   AllowWay(thread);
   MeterOf(thread).Begin(thread.metered, tsc, true, false);
-  // What a switch takes there is not known, nor counted: the clock begins behind it. Nor is
-  // anything to be learnt from it of switches here.
+  // The time that a switch takes there is not known, nor counted: the clock begins behind it. Nor
+  // is anything to be learnt from it of switches here.
   thread.metered.unchecked_runs = {};
   thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = tsc;
 }
 
 void HostCpu::Woke() { stop_tsc_ = HostTsc(); }
 
-// What the coordinator did meanwhile is not the thread's.
+// The time that the coordinator took meanwhile is not the thread's.
 void HostCpu::Continue(HostThread& thread) {
   const std::uint64_t stopped_tsc = stop_tsc_;
   Woke();
-  // If it runs on its CPU clock tells; and its page is not to be touched.
+  // If the thread runs on, its CPU clock tells; and its page is not to be touched.
   if (thread.slot_memory == nullptr || !stands_still()) return;
   shm::ClockPage& page = thread.slot_memory->clock;
   page.base_tsc = thread.grant.base_tsc += stop_tsc_ - stopped_tsc;
@@ -100,13 +101,13 @@ void HostCpu::Continue(HostThread& thread) {
 }
 
 // What the thread has taken out itself moved its origin; and it may have become another one
-// meanwhile. What is found stolen here the thread does not find again: where it runs on
+// meanwhile. The thread does not find again what is found stolen here: where the thread runs on
 // undispatched it goes on with the clock that it has.
 void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock, shm::ClockPage* page) {
   const OnPage on_copy(thread.metered, page);
   FollowOrigin(thread);
-  // Beside it may not have come to its gate yet: only then does the kernel tell what it has
-  // computed.
+  // A thread beside may not have come to its gate yet: only at the gate does the kernel tell what
+  // it has computed.
   thread.metered.can_be_audited = !thread.is_beside;
   std::uint64_t word = page->executed_adjust.load();
   const std::int64_t stolen_ns = page->stolen_ns.load();
@@ -129,8 +130,8 @@ void HostCpu::AllowAttach(HostThread& thread) {
   metered.most_ways = std::max(metered.most_ways, metered.OnEither(shm::kMostAttachNs));
 }
 
-// Without levels the thread may run, and move it on meanwhile: its page is left alone as long as
-// what it says can be.
+// Without levels the thread may run, and move the origin on meanwhile: its page is left alone as
+// long as what the page says can be.
 void HostCpu::FollowOrigin(HostThread& thread) {
   MeteredThread& metered = thread.metered;
   if (!metered.has_origin()) return;

@@ -1,6 +1,6 @@
-// Charges a thread nothing at all: that of an ideal robot, whose clock stands still while it
-// computes and goes on only while it waits. So it never comes to a horizon by what it does. One
-// that computes on and on is found silent in the end, and waits for others then.
+// Charges a thread nothing at all: a thread of an ideal robot, whose clock stands still while it
+// computes and goes on only while it waits. So the thread never comes to a horizon by what it does.
+// A thread that computes on and on is found silent in the end, and waits for others then.
 #pragma once
 
 #include "coordinator/host/fixed_meter.h"
@@ -9,7 +9,7 @@ namespace tcs {
 
 class IdealMeter final : public FixedMeter {
  public:
-  static constexpr HostDuration kLookAgainEvery = HostDuration::Milliseconds(1);  // from then on
+  static constexpr HostDuration kLookAgainEvery = HostDuration::Milliseconds(1);  // once silent
 
   // A thread is found silent after so long, of real time.
   explicit IdealMeter(HostDuration silent_after)

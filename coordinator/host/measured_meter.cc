@@ -13,11 +13,12 @@ namespace {
 // More than what clocks and the coordinator's estimates differ by in one dispatch.
 constexpr std::int64_t kSlackNs = 10'000'000;
 
-// A thread asks its own CPU clock, and says that it has. After so much it is not believed.
+// A thread asks its own CPU clock, and says that it has. After the thread has run so much it is not
+// believed.
 constexpr HostDuration kAuditAfter = HostDuration::Milliseconds(1);
 
-// More than it has run was taken out of its clock, as stolen: by its program, or because the host's
-// clocks do not agree.
+// True if more time than the thread has run was taken out of its clock, as stolen: by its program,
+// or because the host's clocks do not agree.
 bool HasTakenTooMuch(const shm::ClockPage& page, std::uint64_t tsc) {
   const std::int64_t ran_ns =
       shm::MulQ32(static_cast<std::int64_t>(tsc - page.base_tsc), page.ns_per_tick_q32);
@@ -73,7 +74,7 @@ bool MeasuredMeter::HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc,
 HostDuration MeasuredMeter::TakeOutUnaccounted(MeteredThread& thread,
                                                const shm::ClockReading& before, std::uint64_t tsc,
                                                HostDuration asked, const CpuClock& clock) {
-  Check(thread, tsc, clock);  // which tells of most thieves
+  Check(thread, tsc, clock);  // the CPU clock tells of most thieves
   shm::ClockPage& page = *thread.page;
   const shm::ClockReading now = shm::ReadClockAt(page, tsc);
   const std::int64_t shown_ns = page.last_shown_ns.load(std::memory_order_relaxed);
@@ -110,7 +111,7 @@ void MeasuredMeter::CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const C
   if (shm::IsCheckDue(page, shm::ReadClockAt(page, tsc))) Check(thread, tsc, clock);
 }
 
-// So much has the thread run without being asked by the coordinator.
+// True if the thread has run so much without being asked by the coordinator.
 bool MeasuredMeter::IsAuditDue(const MeteredThread& thread) const {
   const auto most_ticks = static_cast<double>(kAuditAfter.ns()) * rate_.ticks_per_ns;
   return thread.can_be_audited && static_cast<double>(thread.unaudited_ticks) > most_ticks;

@@ -1,9 +1,10 @@
-// Charges a thread the time for which it has run: what the TSC counts, less what was stolen.
+// Charges a thread the time for which it has run: the time that the TSC counts, less what was
+// stolen.
 //
 // The TSC also counts what others took. So whenever much of it has passed unchecked the thread's
-// own CPU clock is asked, and the difference taken out. What is on both clocks and yet was not the
-// thread's tells by the coordinator's timer (stolen_time.h). The thread takes out by itself what it
-// finds stolen; where that is more than it can have run, its CPU clock is asked, too.
+// own CPU clock is asked, and the difference taken out. The coordinator's timer tells of time that
+// is on both clocks and yet was not the thread's (stolen_time.h). The thread takes out by itself
+// what it finds stolen; where that is more than it can have run, its CPU clock is asked, too.
 #pragma once
 
 #include "coordinator/host/meter.h"
@@ -29,7 +30,7 @@ class MeasuredMeter : public Meter {
                                   const CpuClock& clock) override;
   void Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
   void End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
-  void ChargeCall(MeteredThread&, VirtualDuration) override {}  // its time is on the clock
+  void ChargeCall(MeteredThread&, VirtualDuration) override {}  // the call's time is on the clock
 
  protected:
   double NsBetween(std::uint64_t tsc, std::uint64_t later_tsc) const {

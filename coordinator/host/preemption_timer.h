@@ -3,9 +3,9 @@
 //
 // A timer due before the kernel's next tick is programmed into the hardware when it is set and
 // again when it is not needed any more: on a virtual machine that is as much as the context switch.
-// So a thread that has stopped by itself long before its horizon of late gets one that comes after
-// the tick (250 Hz). Should it compute on this once, it is as with any late timer: its clock stops
-// at the horizon, and the rest is a debt.
+// So a thread that has stopped by itself long before its horizon of late gets a timer that comes
+// after the tick (250 Hz). Should the thread compute on this once, the timer is like any late
+// timer: the thread's clock stops at the horizon, and the rest is a debt.
 #pragma once
 
 #include <algorithm>
@@ -17,15 +17,16 @@ class PreemptionTimer {
  public:
   static constexpr std::int64_t kShortestNs = 2'000;
   static constexpr std::int64_t kLaxNs = 4'100'000;
-  // Nobody computes for longer than this without the coordinator's looking: what is stolen and no
-  // clock tells of, it finds by its timer.
+  // No thread computes for longer than this without the coordinator's looking: the coordinator
+  // finds by its timer what is stolen and no clock tells of.
   static constexpr std::int64_t kLongestNs = kLaxNs;
-  // Whose longest run is shorter than the time to its horizon, by this, stops by itself.
+  // A thread whose longest run is shorter than the time to its horizon, by this factor, stops by
+  // itself.
   static constexpr std::int64_t kOftenShorter = 4;
   static constexpr double kMostLatenessNs = 50'000.0;
 
-  // `left_ns`: until a thread that computes on is at its horizon. `longest_run_ns`: its longest run
-  // of late.
+  // `left_ns`: until a thread that computes on is at its horizon. `longest_run_ns`: the thread's
+  // longest run of late.
   std::int64_t NsToSleep(double left_ns, std::int64_t longest_run_ns) const {
     const auto ns = static_cast<std::int64_t>(std::min(left_ns, kMostLeftNs) - lateness_ns_);
     if (longest_run_ns < ns / kOftenShorter) return kLaxNs;
@@ -48,7 +49,7 @@ class PreemptionTimer {
 
  private:
   static constexpr double kMostLeftNs = 1e9;
-  static constexpr int kRuns = 16;  // that an average is of
+  static constexpr int kRuns = 16;  // over which an average is taken
 
   double lateness_ns_ = 5'000;  // against a thread that computes
 };

@@ -1,10 +1,10 @@
-// What one run of a thread comes to, once the thread has stopped: how far its virtual CPU has got,
+// The result of one run of a thread, once the thread has stopped: how far its virtual CPU has got,
 // and what the thread still owes.
 //
 // A thread's clock counts on while the thread runs, also beyond its horizon, where timers are late;
-// it never shows more than the horizon. So the virtual CPU comes to the horizon at most, and what
-// was executed beyond is a debt, charged first at the next dispatch. Pure; all times are the
-// virtual CPU's.
+// but the clock never shows more than the horizon. So the virtual CPU comes to the horizon at most,
+// and what the thread executed beyond is a debt, charged first at the next dispatch. Pure; all
+// times are the virtual CPU's.
 #pragma once
 
 #include <algorithm>
@@ -15,15 +15,16 @@
 
 namespace tcs {
 
-// A thread stopped this close before its horizon has reached it: the rest is credit. Of a short
-// turn of one that others look at in short steps it is a part, so that the thread does run. Not
-// where the coordinator shares its processor: it would look again and again, and keep the thread
-// from it.
+// A thread stopped this close before its horizon has reached it: the rest is credit. In a short
+// turn of a thread at which others look in short steps, the credit is a part of the turn, so that
+// the thread does run. Not where the coordinator shares the thread's processor: the coordinator
+// would look again and again, and keep the thread from the processor.
 inline constexpr VirtualDuration kCredit = VirtualDuration::Microseconds(20);
 inline constexpr std::int64_t kCreditsInTurn = 4;
-// So much a thread computes before its CPU clock is asked what of it was stolen.
+// A thread computes so much before its CPU clock is asked what of it was stolen.
 inline constexpr HostDuration kCheckAfter = HostDuration::Microseconds(100);
-// Shown too early by what was stolen unnoticed, and stopped early: no more than both.
+// Time shown too early because of what was stolen unnoticed, and an early stop: the credit is no
+// more than both.
 inline constexpr VirtualDuration kMostCredit = VirtualNs(kCheckAfter.ns()) + kCredit;
 
 struct StoppedRun {
@@ -31,14 +32,15 @@ struct StoppedRun {
   VirtualTime horizon;  // as it is now; where others need the thread early, before its start
   VirtualTime reached;  // by the thread's clock
   VirtualTime shown;    // the furthest that this clock has shown
-  // When the thread began to notify. None if it did not, and of a yield, which is a system call of
-  // the program's natively, too: who spins on it must get on.
+  // When the thread began to notify. Empty if the thread did not, and for a yield, which is
+  // natively a system call of the program's, too: a thread that spins on a yield must get on.
   std::optional<VirtualTime> noted;
-  // What of the rest may have been the notification itself: the thread says when it began.
+  // The part of the rest that may have been the notification itself: the thread says when the
+  // notification began.
   VirtualDuration most_overhead = VirtualNs(shm::kMostExchangeNs);
-  bool is_preempted = false;  // by the timer, rather than by what it asked for
-  VirtualDuration credit;     // that it had at its dispatch
-  bool in_steps = false;      // others look at what it does in short steps
+  bool is_preempted = false;  // by the timer, rather than by what the thread asked for
+  VirtualDuration credit;     // that the thread had at its dispatch
+  bool in_steps = false;      // other threads look at what this one does in short steps
 };
 
 struct Settlement {
@@ -47,7 +49,8 @@ struct Settlement {
   VirtualDuration exchange_overhead;  // counted, but neither time nor charge of the thread's
 };
 
-// Of a turn from `start` to `horizon`, times on one clock. `in_steps`: others look in short steps.
+// Of a turn from `start` to `horizon`, times on one clock. `in_steps`: other threads look in short
+// steps.
 template <class Time>
 constexpr bool IsAtHorizon(Time now, Time start, Time horizon, bool in_steps) {
   if (!in_steps) return now >= horizon - kCredit;
@@ -58,16 +61,16 @@ constexpr bool IsAtHorizon(Time now, Time start, Time horizon, bool in_steps) {
 constexpr Settlement SettleRun(const StoppedRun& run) {
   constexpr VirtualDuration kNone;
   Settlement result;
-  // What the notification itself takes is exchange overhead: neither the thread's clock nor its
-  // charge shows it. One that had begun to notify when an earlier turn ended still owes what it had
-  // executed then.
+  // The time of the notification itself is exchange overhead: neither the thread's clock nor its
+  // charge shows it. A thread that had begun to notify when an earlier turn ended still owes what
+  // it had executed then.
   if (run.noted.has_value() && *run.noted < run.horizon) {
     const VirtualTime begun = run.start + std::max(kNone, -run.credit);
     result.exchange_overhead =
         std::clamp(run.reached - std::max(*run.noted, begun), kNone, run.most_overhead);
   }
   const VirtualTime reached = run.reached - result.exchange_overhead;
-  // What the clock has shown has happened, even where stolen time was found in it afterwards.
+  // Time that the clock has shown has happened, even where stolen time was found in it afterwards.
   result.progress =
       std::clamp(std::max(reached, run.shown), run.start, std::max(run.start, run.horizon));
   if (run.is_preempted && IsAtHorizon(result.progress, run.start, run.horizon, run.in_steps)) {

@@ -3,14 +3,15 @@
 // clock from one look at the CPU clock to the next. A dispatch begins with such a look, its end is
 // one, and no context switch has to be learnt: whatever is not on the CPU clock is not charged.
 //
-// Of a thread that has died, and whose process the kernel has yet to end, no clock tells any more:
-// it has computed what its CPU clock said last.
+// No clock tells any more of a thread that has died, and whose process the kernel has yet to end:
+// the thread has computed what its CPU clock said last.
 //
 // A thread may have computed beyond its horizon, or after it was held, for as long as nothing
 // stopped it: the timer tells nothing of what was stolen.
 //
 // The coordinator's looks take time from the thread, on the same processor. Where others have most
-// of that, the thread is not at its horizon for long, and looks are further and further apart.
+// of the processor's time, it takes the thread long to come to its horizon, and looks are further
+// and further apart.
 #pragma once
 
 #include "coordinator/host/measured_meter.h"

@@ -1,6 +1,6 @@
-// Tells when a thread that was dispatched does not get the processor, because threads that nobody
-// knows of have it. The thread's CPU clock tells, and costs a system call: so it is asked seldom,
-// and half as often once it has told. Pure.
+// Tells when a thread that was dispatched does not get the processor, because threads that the
+// coordinator does not know have it. The thread's CPU clock tells, and costs a system call: so it
+// is asked seldom, and half as often once it has told. Pure.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ class StarvationWatch {
   // Whether it is time to ask the thread's CPU clock.
   bool IsDue(std::uint64_t tsc) const { return static_cast<double>(tsc - looked_tsc_) > ticks_; }
 
-  // It was asked (-1: it cannot be read). True if it has stood still since it was asked before.
+  // The CPU clock was asked (-1: it cannot be read). True if the clock has stood still since it was
+  // asked before.
   bool Starves(std::uint64_t tsc, std::int64_t cpu_ns) {
     looked_tsc_ = tsc;
     if (cpu_ns < 0 || std::exchange(cpu_ns_, cpu_ns) != cpu_ns) return false;

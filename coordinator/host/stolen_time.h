@@ -2,10 +2,10 @@
 // paused, or whose host accounts for nothing, and a burst of interrupts are all on the CPU clock of
 // the thread that they hit.
 //
-// What tells is the coordinator's own timer. The coordinator preempts the threads that it
-// dispatches, so that nobody can have computed beyond the instant at which the timer was due: what
-// is counted beyond it is stolen. The theft began before that instant, and how long before nobody
-// saw; so of the rest, too, the thread is charged no more than the longest turn that it has taken
+// The coordinator's own timer tells. The coordinator preempts the threads that it dispatches, so
+// that no thread can have computed beyond the instant at which the timer was due: time that is
+// counted beyond it is stolen. The theft began before that instant, and how long before is not
+// known; so of the rest, too, the thread is charged no more than the longest turn that it has taken
 // of late, or than what its clock has shown already. Pure; the host's nanoseconds.
 #pragma once
 
@@ -26,7 +26,7 @@ struct HostTurn {
 // thread without giving way.
 inline constexpr std::int64_t kMostTimerLatenessNs = 1'000'000;
 
-// What of the turn is not the thread's; 0 where the timer came in time.
+// The part of the turn that is not the thread's; 0 where the timer came in time.
 constexpr std::int64_t UnaccountedSteal(const HostTurn& turn) {
   if (turn.counted_ns <= turn.asked_ns + kMostTimerLatenessNs) return 0;
   const std::int64_t its = std::clamp(turn.usual_ns, std::int64_t{0}, turn.asked_ns);

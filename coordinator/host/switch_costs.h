@@ -1,6 +1,6 @@
-// What a context switch takes: from the coordinator's last word to the thread's first, and back.
-// None of it is the thread's, so its clock begins that much later. Learnt from what the thread's
-// CPU clock has not counted of such runs. Pure; the host's nanoseconds.
+// The time that a context switch takes: from the coordinator's last word to the thread's first, and
+// back. That time is not the thread's, so its clock begins that much later. Learnt from what the
+// thread's CPU clock has not counted of such runs. Pure; the host's nanoseconds.
 #pragma once
 
 #include <algorithm>
@@ -23,24 +23,24 @@ class SwitchCosts {
  public:
   static constexpr double kMostNs = 20'000.0;
 
-  // Of a thread that was preempted; or of one at its gate, which has more of the kernel to run
+  // For a thread that was preempted; or for one at its gate, which has more of the kernel to run
   // through.
   double Ns(bool from_gate) const { return from_gate ? from_gate_ns_ : preempted_ns_; }
 
-  // `stolen_ns`: what the thread's own clock has counted in these runs, and its CPU clock has not.
-  // Runs of both kinds tell of neither.
+  // `stolen_ns`: the time that the thread's own clock has counted in these runs, and that its CPU
+  // clock has not. Runs of both kinds tell of neither.
   void Learn(const UncheckedRuns& runs, double stolen_ns) {
     if (runs.count <= 0) return;
     const bool all_from_gate = runs.from_gate == runs.count;
     if (!all_from_gate && runs.from_gate != 0) return;
-    // What is stolen at each one is the switch itself.
+    // The time stolen at each run is the switch itself.
     const double more_ns = std::clamp(stolen_ns / runs.count, -kMostNs, kMostNs);
     double& known_ns = all_from_gate ? from_gate_ns_ : preempted_ns_;
     known_ns = std::clamp(known_ns + more_ns / kRuns, 0.0, kMostNs);
   }
 
  private:
-  static constexpr int kRuns = 16;  // that the average is of
+  static constexpr int kRuns = 16;  // over which the average is taken
 
   double preempted_ns_ = 0, from_gate_ns_ = 0;
 };

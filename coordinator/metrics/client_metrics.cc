@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kReadAtOnce = 64 << 10;
 constexpr std::int64_t kMostAtOnce = 1 << 30;
 
-// None if it is no file, which a program may have put something else in the place of.
+// The client's log, opened. None if it is no file: a program may have put something else in its
+// place.
 UniqueFd OpenLog(const std::string& path) {
   UniqueFd fd(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK));
   struct stat is {};

@@ -1,5 +1,5 @@
 // Sums, differences, products, norms and distances of the quantities of a run, as a scenario writes
-// them: `norm(rover.x, rover.y) - 1.5`. Pure: what a name stands for others know.
+// them: `norm(rover.x, rover.y) - 1.5`. Pure: ExpressionNames knows what a name stands for.
 //
 //   condition := sum ('<' | '<=' | '>' | '>=') sum
 //   sum       := product (('+' | '-') product)*
@@ -8,7 +8,7 @@
 //              | 'norm' '(' sum (',' sum)* ')' | 'abs' '(' sum ')' | 'distance' '(' name ',' name
 //              ')'
 //
-// A name is of letters, digits, '_', '.', '/' and '-', and the longest that there is is meant:
+// A name is of letters, digits, '_', '.', '/' and '-', and the longest name that exists is meant:
 // `a-b.x` is one quantity if there is such a thing, and `a.x-1` a difference.
 #pragma once
 
@@ -23,24 +23,24 @@
 
 namespace tcs {
 
-// What names stand for.
+// The quantities that names stand for.
 class ExpressionNames {
  public:
   virtual ~ExpressionNames() = default;
-  // Where the value of the quantity is among those that Evaluate is given; or why there is no such
-  // quantity, as a sentence.
+  // The index of the quantity's value among the values that Evaluate is given; or why there is no
+  // such quantity, as a sentence.
   [[nodiscard]] virtual std::variant<std::size_t, std::string> ValueOf(std::string_view name) = 0;
-  // The same of the x, y and z of what has a place.
+  // The same, for the x, y and z of a body or another thing that has a place.
   [[nodiscard]] virtual std::variant<std::array<std::size_t, 3>, std::string> PlaceOf(
       std::string_view name) = 0;
 };
 
 class Expression {
  public:
-  // The value, given those of the quantities; of a condition 1 or 0. May be infinite, or no number,
-  // where they are.
+  // The expression's value, given the values of the quantities; of a condition 1 or 0. The result
+  // may be infinite, or no number, where the quantities' values are.
   [[nodiscard]] double Evaluate(std::span<const double> values) const;
-  // Which of them it needs.
+  // The indices of the values that the expression needs.
   [[nodiscard]] std::vector<std::size_t> Needs() const;
 
  private:
@@ -63,13 +63,13 @@ class Expression {
     double number = 0;      // of kNumber
     std::size_t count = 0;  // which value; of kNorm, of how many
   };
-  // So many numbers are kept at a time while it is evaluated.
+  // The most numbers that are kept at a time while the expression is evaluated.
   static constexpr std::size_t kMostKept = 64;
-  std::vector<Step> steps_;  // each takes its operands from those before, the last ones first
+  std::vector<Step> steps_;  // each step takes its operands from the steps before, last first
 };
 
-// Either what is written, or what is wrong with it, as a sentence. Whatever the text, it takes
-// little memory and no deep recursion.
+// Either the expression, or what is wrong with the text, as a sentence. Whatever the text, parsing
+// takes little memory and no deep recursion.
 [[nodiscard]] std::variant<Expression, std::string> ParseExpression(std::string_view text,
                                                                     ExpressionNames& names);
 [[nodiscard]] std::variant<Expression, std::string> ParseCondition(std::string_view text,

@@ -23,14 +23,15 @@ bool BeginsName(char c) {
 }
 bool IsInName(char c) { return BeginsName(c) || c == '.' || c == '/' || c == '-'; }
 
-// What ends the parsing; never leaves this file.
+// The exception that ends the parsing; it never leaves this file.
 struct ParseMistake {
   std::string sentence;
 };
 
 }  // namespace
 
-// By recursive descent. Each part appends its steps, and says whether it is a number that is known.
+// Parses by recursive descent. The function of a part appends the part's steps, and says whether
+// the part is a known number.
 class ExpressionParser {
  public:
   ExpressionParser(std::string_view text, ExpressionNames& names) : text_(text), names_(names) {}
@@ -97,7 +98,7 @@ class ExpressionParser {
     made_.steps_.push_back({kind, number, count});
   }
 
-  // In the place of the steps from `from` on, which are those of numbers alone.
+  // Puts `value` in the place of the steps from `from` on, which are of numbers alone.
   Known Fold(std::size_t from, double value) {
     if (!std::isfinite(value)) Fail("a number in it is too large");
     made_.steps_.resize(from);
@@ -154,7 +155,7 @@ class ExpressionParser {
     }
   }
 
-  // One level deeper, as long as there is one.
+  // One nesting level deeper, as long as the object exists.
   class Deeper {
    public:
     explicit Deeper(int* depth) : depth_(*depth) {
@@ -204,7 +205,7 @@ class ExpressionParser {
     if (!Take(")")) Unexpected("',' or ')'");
   }
 
-  // What begins like a number may be a name ("2nd.x"), if it goes on like one.
+  // A word that begins like a number may be a name ("2nd.x"), if it goes on like a name.
   Known Number() {
     if (AtEnd() || (!IsNumeral(text_[at_]) && text_[at_] != '.')) return {};
     double number = 0;
@@ -232,7 +233,7 @@ class ExpressionParser {
     return text_.substr(from, at_ - from);
   }
 
-  // The longest that there is: names may have a '-' or a '/' in them.
+  // Takes the longest name that exists: names may have a '-' or a '/' in them.
   void Quantity(std::string_view name) {
     auto found = names_.ValueOf(name);
     for (std::size_t sign = name.find_last_of("-/");

@@ -8,10 +8,10 @@ namespace tcs {
 
 namespace {
 
-// One byte more than a line may have, to be told from it.
+// One byte more than a metric line may have: a line that is too long can be told by its length.
 constexpr std::size_t kMostKept = kLongestMetricLine + 1;
 
-// Whether it may become one.
+// Whether the line that has begun may become a metric line.
 bool MayBeMetric(std::string_view begun) {
   return begun.size() < kMetricWord.size() ? kMetricWord.starts_with(begun) : IsMetricLine(begun);
 }

@@ -1,5 +1,5 @@
-// Finds the lines that tell of metrics in a program's output, which comes in pieces. Pure. What it
-// keeps of the output is the beginning of one such line at most.
+// Finds the lines that tell of metrics in a program's output, which comes in pieces. Pure. The
+// finder keeps at most the beginning of one such line.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace tcs {
 
 class MetricLineFinder {
  public:
-  // Of a line without its end, which counts from 1 among all lines. Of one that is too long, its
-  // beginning, which is too long, too.
+  // Gets a line without its line end; `number` counts from 1 among all lines. Of a line that is too
+  // long it gets the beginning, which is too long, too.
   using OnLine = std::function<void(std::string_view line, std::int64_t number)>;
 
   // The output goes on with `piece`.
@@ -21,8 +21,8 @@ class MetricLineFinder {
   void Finish(const OnLine& on_line);
 
  private:
-  std::string begun_;         // a line that may be one, and has no end yet
-  bool is_in_other_ = false;  // within a line that is none
+  std::string begun_;         // a line that may be a metric line, and has no end yet
+  bool is_in_other_ = false;  // within a line that is no metric line
   std::int64_t ended_ = 0;    // lines
 };
 

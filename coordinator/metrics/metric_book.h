@@ -18,19 +18,19 @@ namespace tcs {
 
 class MetricBook {
  public:
-  // So many metrics of one source, and so many lines of one metric in the file.
+  // The most metrics of one source, and the most lines of one metric in the file.
   static constexpr std::size_t kMostOfOneSource = 1000;
   static constexpr std::int64_t kMostLines = 1'000'000;
 
-  // The file will be in this folder, if there are values; that of an earlier run is removed.
+  // The file will be in this folder, if there are values; the file of an earlier run is removed.
   void OpenIn(const std::string& folder);
 
-  // The metric's number; a new one has no values. -1: the source has too many already.
+  // The metric's number; a new metric has no values. -1: the source has too many already.
   int NumberOf(std::string_view from, std::string_view name,
                MetricFigure asked = MetricFigure::kLast);
   // IsMetricValue(value). `has_line`: the file has the value, too. `may_be_first`: first_time_ns
-  // may be its time. False if the file lacks it because it has too many of this metric: the first
-  // time.
+  // may be its time. False if the file lacks the value because it has too many values of this
+  // metric; false only the first time.
   bool Add(int metric, std::int64_t time_ns, double value, bool has_line = true,
            bool may_be_first = true);
 
@@ -39,7 +39,7 @@ class MetricBook {
   [[nodiscard]] std::string Close();
 
   [[nodiscard]] MetricsOfRun Figures() const;
-  // Of those from kMetricFromExpectations, which are not among the others.
+  // The figures of the metrics from kMetricFromExpectations, which Figures() leaves out.
   [[nodiscard]] MetricsOfRun Expected() const;
 
  private:

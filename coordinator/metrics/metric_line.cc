@@ -14,7 +14,7 @@ namespace tcs {
 namespace {
 
 constexpr std::size_t kMostShown = 40;
-// Programs go on for as long behind the run's end, at most.
+// Programs go on for this long after the run's end, at most.
 constexpr std::int64_t kGraceNs = 60'000'000'000;
 
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -34,7 +34,8 @@ std::string_view TakeWord(std::string_view* text) {
   return word;
 }
 
-// As a person may see it in a sentence: the beginning, without what a terminal would obey.
+// The word as a sentence shows it to a person: its beginning, without characters that a terminal
+// would obey.
 std::string Shown(std::string_view word) {
   std::string shown(word.substr(0, kMostShown));
   for (char& c : shown) {

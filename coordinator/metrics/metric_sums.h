@@ -20,7 +20,7 @@ class MetricSums {
   MetricSums() = default;
   explicit MetricSums(MetricFigures begin) : figures_(std::move(begin)) {}
 
-  // IsMetricValue(value). `may_be_first`: first_time_ns may be of it.
+  // IsMetricValue(value). `may_be_first`: first_time_ns may be of this value.
   void Add(std::int64_t time_ns, double value, bool may_be_first = true) {
     MetricFigures& f = figures_;
     ++f.count;

@@ -13,7 +13,7 @@ namespace {
 using Point = std::array<double, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-// One vertex for each value of `key_of`, in the middle of those that have it.
+// One vertex for each value of `key_of`, in the middle of the vertices that have it.
 template <class KeyOf>
 Surface Clustered(const Surface& surface, const KeyOf& key_of) {
   std::map<decltype(key_of(Point{})), std::uint32_t> number_of;
@@ -34,7 +34,7 @@ Surface Clustered(const Surface& surface, const KeyOf& key_of) {
   for (std::size_t i = 0; i < counts.size(); ++i) {
     for (double& x : clustered.vertices[i]) x /= counts[i];
   }
-  // Each once, whichever of its corners it begins with.
+  // Each triangle once, whichever of its corners it begins with.
   std::set<Triangle> seen;
   for (const Triangle& triangle : surface.triangles) {
     Triangle now;
@@ -46,7 +46,7 @@ Surface Clustered(const Surface& surface, const KeyOf& key_of) {
   return clustered;
 }
 
-// Only vertices that a triangle has.
+// The surface with only the vertices that a triangle has.
 Surface WithoutLoose(const Surface& surface) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> number_of(surface.vertices.size(), kNone);

@@ -19,7 +19,7 @@ namespace {
       fmt::format("{}: cannot be read: {}; give the path of {}", path, std::strerror(error), what)};
 }
 
-// Its size in bytes.
+// The size of the opened file in bytes.
 std::size_t CheckOpened(int fd, const std::string& path, std::size_t most_bytes, const char* what) {
   struct stat status;
   if (fstat(fd, &status) != 0) FailToRead(path, errno, what);
@@ -44,7 +44,8 @@ UniqueFd Open(const std::string& path, const char* what) {
 
 std::string TextOf(const std::string& path, std::size_t most_bytes, const char* what) {
   const UniqueFd fd = Open(path, what);
-  // One more than there is, so that a file that grows meanwhile is not read for ever.
+  // Reads no more than the size at the opening, so that a file that grows meanwhile is not read for
+  // ever.
   std::string text(CheckOpened(fd.get(), path, most_bytes, what), '\0');
   std::size_t size = 0;
   while (size < text.size()) {

@@ -1,4 +1,4 @@
-// The whole text of a file that somebody named, which may be anything.
+// The whole text of a file that a user named, which may be anything.
 #pragma once
 
 #include <cstddef>
@@ -6,12 +6,12 @@
 
 namespace tcs {
 
-// Throws ModelMistake, "PATH: …", for what cannot be read, is no ordinary file (a pipe would be
-// waited for, a device has no end) or is longer than `most_bytes`. `what` says in a sentence what
-// it should be: "a URDF file".
+// Throws ModelMistake, "PATH: …", for a file that cannot be read, is no ordinary file (a pipe
+// would be waited for, a device has no end) or is longer than `most_bytes`. `what` says in a
+// sentence what it should be: "a URDF file".
 std::string TextOf(const std::string& path, std::size_t most_bytes, const char* what);
 
-// The same without reading it.
+// The same checks, without reading the file.
 void CheckFile(const std::string& path, std::size_t most_bytes, const char* what);
 
 }  // namespace tcs

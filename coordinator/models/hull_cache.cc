@@ -18,7 +18,8 @@
 namespace tcs {
 namespace {
 
-// Whatever changes what is found of a mesh, or how it is packed, makes this another one.
+// A change of the hulls that are found of meshes, or of how hulls are packed, needs another
+// version.
 constexpr int kHullVersion = 1;
 constexpr std::size_t kLeastCachedBytes = 64 << 10;
 constexpr std::size_t kMostCachedBytes = 1 << 20;
@@ -40,7 +41,7 @@ std::string CacheFolder() {
   return {};
 }
 
-// Of what nobody else has written; empty: there is no such file.
+// The text of a file that no other user has written; empty: there is no such file.
 std::string OwnText(const std::string& path) {
   const UniqueFd fd(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   struct stat status;
@@ -72,7 +73,7 @@ std::string HullCache::Find() const {
   return DigestOf(hull) == text.substr(0, kDigits) ? hull : std::string();
 }
 
-// Two runs may do so at once: each writes a file of its own, and names it.
+// Two runs may keep a hull at once: each run writes a file of its own, and renames it.
 void HullCache::Keep(const std::string& hull) const {
   if (path_.empty() || hull.size() + kDigits > kMostCachedBytes) return;
   std::error_code error;

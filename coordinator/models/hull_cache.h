@@ -1,7 +1,6 @@
 // Convex hulls that earlier runs have found, by the content of the meshes: in the user's cache
-// folder
-// ($XDG_CACHE_HOME/tcs/hulls, or ~/.cache/tcs/hulls), whose files may be deleted at any time.
-// What is damaged there, or cannot be read or written, is as if it were not there.
+// folder ($XDG_CACHE_HOME/tcs/hulls, or ~/.cache/tcs/hulls), whose files may be deleted at any
+// time. A file that is damaged there, or cannot be read or written, is as if it were not there.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +10,12 @@ namespace tcs {
 
 class HullCache {
  public:
-  // For the mesh `text`, which `reader` names the way it is read by (a file's ending), and hulls of
-  // `most_vertices`. Without a cache folder, or where the mesh is so small that it is quickly read,
-  // nothing is kept.
+  // For hulls of `most_vertices` of the mesh `text`; `reader` names the way in which the mesh is
+  // read (a file's ending). Without a cache folder, or where the mesh is so small that it is
+  // quickly read, nothing is kept.
   HullCache(const std::string& text, const std::string& reader, std::size_t most_vertices);
 
-  // What was kept; empty: nothing.
+  // The hull that was kept; empty: none.
   std::string Find() const;
   void Keep(const std::string& hull) const;
 

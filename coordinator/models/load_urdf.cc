@@ -23,7 +23,7 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-// Whoever uses the model says where its joints start: 0 need not be within the limits.
+// The user of the model says where its joints start: 0 need not be within the limits.
 RobotModel WithAStart(RobotModel model) {
   for (Joint& joint : model.joints) {
     const JointLimits& limits = joint.limits;
@@ -69,7 +69,7 @@ void SetFriction(const tinyxml2::XMLDocument& document, const UrdfUse& use, Robo
   }
 }
 
-// Nothing but how the robot looks depends on these.
+// Nothing but how the robot looks depends on visuals.
 void NoteMissingVisuals(const tinyxml2::XMLDocument& document, const UrdfSurroundings& around,
                         UrdfNotes* notes) {
   for (const XMLElement* link = document.RootElement()->FirstChildElement("link"); link != nullptr;

@@ -15,27 +15,28 @@
 
 namespace tcs {
 
-// What is not in the file.
+// Settings of a model that are not in the file.
 struct UrdfUse {
   bool has_fixed_base = false;
-  // Of all shapes; none: what the file says, else 0.8.
+  // The friction of all shapes; none: the file's own value, else 0.8.
   std::optional<double> friction{};
-  // Of a file of xacro, by name.
+  // The arguments of a file of xacro, by name.
   std::map<std::string, std::string> xacro_arguments{};
 };
 
 struct LoadedUrdf {
   RobotModel model;
-  std::string expanded;  // what xacro has made of the file; empty: it is none
+  std::string expanded;  // the text that xacro has made of the file; empty: it is no file of xacro
 };
 
-// Loads and checks the URDF file `path` (absolute): CheckModel finds nothing wrong with what it
-// returns, unless it be that 0 is no position of a joint: where it starts is not in the file. Links
-// and joints are in the order of the file. What the field's other tools load is loaded, and what
-// was mended is in `remarks`. Otherwise the mistakes, as far as they can be seen at once: each a
-// sentence beginning "PATH:LINE: " ("PATH: " where the file cannot be read at all). A base that has
-// no mass is fixed. Meshes are convex hulls. A file of xacro is expanded by the machine's `xacro`,
-// if there is one. Reads the environment; not for several threads at once.
+// Loads and checks the URDF file `path` (absolute): CheckModel finds nothing wrong with the
+// returned model, unless it be that 0 is no position of a joint: where a joint starts is not in the
+// file. Links and joints are in the order of the file. A file that the field's other tools load is
+// loaded, and `remarks` says what was mended. Otherwise the function returns the mistakes, as far
+// as they can be seen at once: each a sentence beginning "PATH:LINE: " ("PATH: " where the file
+// cannot be read at all). A base that has no mass is fixed. Meshes are convex hulls. A file of
+// xacro is expanded by the machine's `xacro`, if there is one. Reads the environment; not for
+// several threads at once.
 [[nodiscard]] std::variant<LoadedUrdf, std::vector<LoadError>> LoadUrdf(const std::string& path,
                                                                         const UrdfUse& use,
                                                                         const PackagePath& packages,

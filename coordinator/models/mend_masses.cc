@@ -20,18 +20,19 @@ using Moments = std::array<double, 3>;
 
 // A triangle inequality that is broken by less is rounding.
 constexpr double kRounding = 1e-6;
-// By how much more than it must, in relation to the largest moment, so that it holds for engines,
-// too, after they have turned it.
+// The margin of a mended triangle inequality, in relation to the largest moment, so that it holds
+// for engines, too, after they have turned the inertia.
 constexpr double kMargin = 1e-9;
-// Of a body that has no mass: this part of what it carries, or of what carries it …
+// A body that has no mass gets this part of the mass that it carries, or of the mass that carries
+// it …
 constexpr double kLeastPart = 1e-3;
-// … and at least that.
+// … and at least this mass.
 constexpr double kLeastMassKg = 1e-6;
 // A body without extent is a ball of iron.
 constexpr double kIronKgPerM3 = 7900;
-// What is smaller than that is what rounding left of 0.
+// A radius that is smaller is what rounding left of 0.
 constexpr double kNoRadiusM = 1e-8;
-// Of one without mass: a link as people see it.
+// The radius of a body without mass: a link as people see it.
 constexpr double kMasslessRadiusM = 0.02;
 
 Matrix3 MatrixOf(const PrincipalAxes& principal, const Moments& moments) {
@@ -127,7 +128,7 @@ class Mender {
     }
   }
 
-  // Of each body with all that it carries.
+  // The mass of each body with all that it carries.
   void SumMasses() {
     carried_kg_.resize(tree_.bodies.size());
     for (std::size_t i = tree_.bodies.size(); i-- > 0;) {
@@ -137,7 +138,7 @@ class Mender {
     }
   }
 
-  // Its first link: the child of its joint.
+  // The body's first link: the child of its joint.
   std::size_t TopOf(std::size_t body) const {
     const int joint = tree_.bodies[body].joint;
     return static_cast<std::size_t>(
@@ -234,8 +235,8 @@ void MendMasses(RobotModel* model, const std::function<int(std::size_t)>& line_o
   Mender(model, line_of, notes).Mend();
 }
 
-// A body's moments are sums of two of three second moments that are not negative. Which of these
-// are 0 in the nearest body is tried: there are few ways.
+// A body's moments are sums of two of three second moments that are not negative. The function
+// tries which of these are 0 in the nearest body: there are few ways.
 Moments NearestMoments(const Moments& moments) {
   if (moments[0] >= 0 && moments[2] <= moments[0] + moments[1]) return moments;
   Moments best{};

@@ -80,7 +80,7 @@ Hull Exact(const std::vector<Point>& points) {
       std::swap(triangle[1], triangle[2]);
     }
     for (std::uint32_t& index : triangle) index = number_of.at(index);
-    // Begun with its least vertex: the same triangles, written in one way only.
+    // A triangle begins with its least vertex: the same triangles are written in one way only.
     std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()),
                 triangle.end());
     hull.triangles.push_back(triangle);
@@ -89,7 +89,7 @@ Hull Exact(const std::vector<Point>& points) {
   return hull;
 }
 
-// Those of `points` that are furthest along `count` directions, on a spiral around the ball.
+// The points of `points` that are furthest along `count` directions, on a spiral around the ball.
 std::vector<Point> Furthest(const std::vector<Point>& points, std::size_t count) {
   std::set<std::size_t> chosen;
   for (std::size_t i = 0; i < count; ++i) {
@@ -118,7 +118,7 @@ Hull MeshHull(const std::vector<Point>& points, std::size_t most_vertices) {
 
 std::vector<Point> PlateOf(const std::vector<Point>& points) {
   const Point& origin = points.front();
-  // Of the points the one for which `size` is largest, seen from the first one.
+  // The point for which `size` is largest, seen from the first one.
   const auto furthest = [&](auto size) {
     return *std::max_element(points.begin(), points.end(), [&](const Point& a, const Point& b) {
       return size(Minus(a, origin)) < size(Minus(b, origin));

@@ -28,7 +28,7 @@ constexpr unsigned kMostSeconds = 20;
 using Point = std::array<double, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-// What the child says else: a word, and what follows it.
+// The child's other answers: a letter, and what follows it.
 constexpr char kWhyNotFollows = 'W', kFlatFollows = 'F', kIsLine = 'L';
 static_assert(kWhyNotFollows != kMeshFollows && kFlatFollows != kMeshFollows);
 
@@ -87,7 +87,7 @@ Mesh Read(const std::string& path, bool* is_flat) {
   if (!Unpack(done.result.substr(*is_flat ? 1 : 0), kMostVertices, 2 * kMostVertices, &hull)) {
     Refuse(path, "the library that reads it fails");
   }
-  // Of a plate it would not be known that it is one.
+  // A plate is not kept: nothing in the cache would say that it is one.
   if (!*is_flat) cache.Keep(done.result);
   return {path, std::move(hull.vertices), std::move(hull.triangles)};
 }
@@ -115,7 +115,7 @@ std::shared_ptr<const Mesh> MeshLibrary::Take(const std::string& path, const Poi
     if (is_flat) flat_files_.insert(path);
   }
   Mesh scaled = Scaled(read->second, scale);
-  // By its scale, or but for rounding.
+  // The mesh is flat by its scale, or but for rounding.
   if (!scaled.vertices_m.empty() && !SpansVolume(scaled.vertices_m)) {
     Hull plate = MeshHull(PlateOf(scaled.vertices_m), kMostVertices);
     scaled = {path, std::move(plate.vertices), std::move(plate.triangles)};

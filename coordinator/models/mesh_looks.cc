@@ -40,7 +40,7 @@ std::optional<Surface> ReadLooks(const std::string& path, std::size_t most_trian
     fewer.colour = surface->colour;
     return Packed(fewer);
   };
-  // Of each vertex three numbers, of each triangle three indices.
+  // Three numbers for each vertex, three indices for each triangle.
   const std::size_t most_packed = 64 + most_vertices * 24 + most_triangles * 12;
   const ChildWork done = DoInChild(work, kMostLooksSeconds, most_packed);
   Surface surface;

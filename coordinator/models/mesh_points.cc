@@ -44,7 +44,7 @@ bool IsMeshName(const std::string& path) {
 
 namespace {
 
-// Appends a mesh of the scene, where it is there.
+// Appends a mesh of the scene, at its place in the scene.
 void Append(const aiMesh& mesh, const aiMatrix4x4& transform, bool with_triangles,
             Surface* surface) {
   const auto first = static_cast<std::uint32_t>(surface->vertices.size());
@@ -63,7 +63,8 @@ void Append(const aiMesh& mesh, const aiMatrix4x4& transform, bool with_triangle
   }
 }
 
-// Of the file's own materials. STL and OBJ have none here: theirs are in other files.
+// The colour of the mesh in the file's own materials. STL and OBJ have none here: their materials
+// are in other files.
 std::optional<std::array<double, 3>> ColourOf(const aiScene& scene, const aiMesh& mesh) {
   if (mesh.mMaterialIndex >= scene.mNumMaterials) return {};
   const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
@@ -80,7 +81,7 @@ std::optional<std::array<double, 3>> ColourOf(const aiScene& scene, const aiMesh
   return parts;
 }
 
-// Of the triangles of a surface from the number `first` on.
+// The area of the triangles of a surface from the number `first` on.
 double AreaFrom(const Surface& surface, std::size_t first) {
   double area = 0;
   for (std::size_t i = first; i < surface.triangles.size(); ++i) {
@@ -95,7 +96,7 @@ double AreaFrom(const Surface& surface, std::size_t first) {
 std::variant<Surface, std::string> Read(const std::string& text, const std::string& path,
                                         bool with_triangles) {
   Assimp::Importer importer;
-  importer.SetIOHandler(new NoFiles);  // it is the importer's then
+  importer.SetIOHandler(new NoFiles);  // the importer owns it then
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene =
       importer.ReadFileFromMemory(text.data(), text.size(), 0, EndOf(path).c_str() + 1);

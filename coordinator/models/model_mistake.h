@@ -1,4 +1,4 @@
-// Internal to the loading of models: what is wrong with a file is thrown, and caught where it was
+// Internal to the loading of models: a mistake in a file is thrown, and caught where the file was
 // asked for.
 #pragma once
 

@@ -36,7 +36,7 @@ std::map<std::string, std::vector<std::string>> PackagesIn(const std::string& to
     to_do.pop_front();
     const std::string name = NameOfPackage(folder);
     if (!name.empty()) packages[name].push_back(folder);
-    // A repository may be a package that others are in.
+    // A repository may be a package that other packages are in.
     if ((!name.empty() && depth > 0) || depth == kMostDepth) continue;
     std::error_code error;
     std::vector<fs::path> inside;

@@ -10,7 +10,7 @@ namespace tcs {
 class PackageCrawl {
  public:
   // The folders in `folder` (itself, too) that hold a package.xml with that name, shallow ones
-  // first. Nothing is looked for within packages, in hidden folders, and in those that hold
+  // first. Nothing is looked for within packages, in hidden folders, and in folders that hold
   // CATKIN_IGNORE, COLCON_IGNORE or AMENT_IGNORE. Looks at 20,000 folders at most; each `folder` is
   // looked at once.
   const std::vector<std::string>& Named(const std::string& package, const std::string& folder);

@@ -86,11 +86,11 @@ std::optional<std::string> FirstThatExists(const fs::path& folder,
   return std::nullopt;
 }
 
-// What is around a description: the folders that it is in, up to the clone of the repository, or a
-// few.
+// The surroundings of a description: the folders that it is in, up to the clone of the repository,
+// or a few.
 struct Around {
   std::vector<fs::path> folders;       // the nearest first
-  std::optional<fs::path> repository;  // in all of which packages are looked for
+  std::optional<fs::path> repository;  // packages are looked for in all of it
 };
 
 Around AroundOf(const std::string& described_in) {
@@ -104,7 +104,7 @@ Around AroundOf(const std::string& described_in) {
       around.repository = folder;
       break;
     }
-    // Without one, beside the package that the description is in.
+    // Without a clone, packages are looked for beside the package that the description is in.
     if (Exists(folder / "package.xml") && folder.parent_path().has_relative_path()) {
       around.repository = folder.parent_path();
       enough = std::max(enough, around.folders.size() + 1);
@@ -140,7 +140,7 @@ PackagePath::PackagePath(std::vector<std::string> folders) : folders_(std::move(
 
 namespace {
 
-// Folders that there are, each once.
+// Folders that exist, each once.
 class Candidates {
  public:
   void Add(const fs::path& path) {
@@ -231,7 +231,7 @@ std::string PackagePath::Find(const std::string& name, const std::string& descri
   const std::vector<std::string> files = Spellings(path);
   const fs::path own = fs::path(described_in).parent_path();
   if (auto found = FirstThatExists(own, files)) return *found;
-  // As seen from the folder of its package, which some exporters write.
+  // A path as seen from the folder of its package: some exporters write that.
   if (fs::path(path).is_relative()) {
     for (const fs::path& folder : above) {
       if (auto found = FirstThatExists(folder, files)) return *found;

@@ -8,7 +8,7 @@
 namespace tcs {
 
 // The two links of each <disable_collisions> in the file `path` (absolute). Throws ModelMistake,
-// "PATH:LINE: …", for what is no SRDF.
+// "PATH:LINE: …", for a file that is no SRDF.
 std::vector<std::pair<std::string, std::string>> DisabledCollisions(const std::string& path);
 
 }  // namespace tcs

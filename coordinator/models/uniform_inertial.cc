@@ -41,8 +41,8 @@ double Determinant(const Point& a, const Point& b, const Point& c) {
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-// Tetrahedra from the origin to each triangle, counted negative where a triangle shows it its
-// front.
+// Tetrahedra from the origin to each triangle, counted negative where a triangle shows the origin
+// its front.
 Inertial OfMesh(const Mesh& mesh, double mass_kg) {
   double volume = 0;
   Point first{};

@@ -5,8 +5,8 @@
 
 namespace tcs {
 
-// Of the volume of `geometry`, a plane excepted; of a mesh that of its triangles, whose centre of
-// mass need not be its origin. Sizes and mass are positive.
+// The inertia of the volume of `geometry`, a plane excepted; a mesh has the volume of its
+// triangles, and its centre of mass need not be its origin. Sizes and mass are positive.
 Inertial UniformInertial(const Geometry& geometry, double mass_kg);
 
 }  // namespace tcs

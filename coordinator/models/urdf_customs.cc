@@ -42,7 +42,7 @@ bool HasOneCoordinate(const XMLElement& joint) {
   return IsType(joint, "revolute") || IsType(joint, "continuous") || IsType(joint, "prismatic");
 }
 
-// Some of `size` is 0.
+// Whether one of the shape's sizes is 0.
 bool HasZero(const XMLElement& shape) {
   for (const char* name : {"size", "radius", "length"}) {
     std::string_view rest = TextOf(shape, name);
@@ -115,7 +115,7 @@ class Joints {
   }
 
  private:
-  // What a joint follows in the end.
+  // The joint that a joint follows in the end.
   struct Leading {
     const XMLElement* leader = nullptr;
     double multiplier = 1;
@@ -143,7 +143,7 @@ class Joints {
     }
   }
 
-  // What drives a joint: a follower is driven by nothing.
+  // The bounds of a joint's drive: nothing drives a follower.
   void TakeBounds(XMLElement* joint, XMLElement* limit) {
     if (joint->FirstChildElement("mimic") != nullptr) return;
     for (const char* bound : {"effort", "velocity"}) {
@@ -176,7 +176,7 @@ class Joints {
                        lower));
       joint->SetAttribute(kLockedAt, lower);
     } else {
-      // Both, for whoever asks for either.
+      // Both bounds are set, for readers that ask for either.
       limit->SetAttribute("lower", lower);
       limit->SetAttribute("upper", upper);
     }
@@ -186,7 +186,7 @@ class Joints {
 
   void RemoveMimic(XMLElement* joint) { joint->DeleteChild(joint->FirstChildElement("mimic")); }
 
-  // Of the joint's own <mimic>.
+  // Finds the leader in the joint's own <mimic>.
   void FindLeader(XMLElement* joint) {
     const XMLElement* mimic = joint->FirstChildElement("mimic");
     if (mimic == nullptr) return;
@@ -215,7 +215,7 @@ class Joints {
     }
   }
 
-  // To the joint that moves by itself.
+  // Goes from leader to leader, to the joint that moves by itself.
   std::optional<Leading> LeadingOf(const XMLElement& follower) const {
     Leading leading;
     const XMLElement* at = &follower;
@@ -257,7 +257,7 @@ class Joints {
   }
 
  public:
-  // Once all have been followed to their leaders.
+  // Called once all joints have been followed to their leaders.
   void Write() {
     for (const auto& [joint, at] : standing_) {
       RemoveMimic(joint);
@@ -288,7 +288,7 @@ void LeaveLoneLinksOut(XMLElement* robot, UrdfNotes* notes) {
     }
   }
   std::vector<XMLElement*> links = ChildrenNamed(robot, "link");
-  // Those that a misspelt end leaves alone are no lone links, and too many are a mistake.
+  // Links that a misspelt end leaves alone are no lone links, and too many links are a mistake.
   std::set<std::string_view> known;
   for (XMLElement* link : links) known.insert(TextOf(*link, "name"));
   if (links.size() > kMostLinks || !std::ranges::includes(known, named)) return;

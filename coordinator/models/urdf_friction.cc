@@ -11,7 +11,7 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-// As an attribute `value` or as text: both are in use.
+// The value, as an attribute `value` or as text: both forms are in use.
 std::optional<double> ValueOf(const XMLElement* element) {
   if (element == nullptr) return std::nullopt;
   double value = 0;

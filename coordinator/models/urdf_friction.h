@@ -9,7 +9,7 @@
 namespace tcs {
 
 // Coulomb's coefficient of each link, by name, that has <gazebo reference="LINK"><mu1> or
-// <contact><lateral_friction value="…"/>. `document` is that of ReadUrdfXml.
+// <contact><lateral_friction value="…"/>. `document` comes from ReadUrdfXml.
 std::map<std::string, double> FrictionOfLinks(const tinyxml2::XMLDocument& document);
 
 // Whether there is nothing in an element <gazebo> of the robot, or <contact> of a link, but what

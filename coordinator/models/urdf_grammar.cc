@@ -33,7 +33,7 @@ using urdf_rules::Rule;
 
 bool HasName(const Rule& rule) { return &rule == &kRobot || &rule == &kLink || &rule == &kJoint; }
 
-// What attributes hold that are about XML, or say what is so anyway.
+// Whether the attribute is about XML, or says what is so anyway.
 bool IsLeftOutSilently(const Rule& rule, const XMLAttribute& attribute) {
   const std::string_view name = attribute.Name();
   if (name.starts_with("xmlns") || name.starts_with("xml:")) return true;
@@ -66,9 +66,9 @@ class Copy {
  public:
   explicit Copy(UrdfNotes* notes) : notes_(*notes) {}
 
-  // As deep as the rules are.
+  // Copies `from` into `to`, as deep as the rules are.
   void Take(const Rule& rule, const XMLElement& from, XMLElement* to) {
-    to->SetUserData(const_cast<XMLElement*>(&from));  // which nobody changes
+    to->SetUserData(const_cast<XMLElement*>(&from));  // nothing changes it
     TakeAttributes(rule, from, to);
     std::map<std::string_view, const XMLElement*> first;
     std::map<std::string_view, int> counts;

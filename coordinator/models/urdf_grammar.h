@@ -1,4 +1,4 @@
-// Reading URDF by its rules (urdf_rules.h): what follows them, and what does not.
+// Reads URDF by its rules (urdf_rules.h): finds which parts follow them, and which do not.
 #pragma once
 
 #include <tinyxml2.h>
@@ -11,11 +11,11 @@
 namespace tcs {
 
 // A copy of `document` (ReadUrdfXml) that holds what is understood and nothing else, its numbers
-// written plainly; lists in it have a single space between their numbers. Each of its elements
-// knows the one that it was made of, which outlives it. Where an attribute is not a finite number,
-// is missing, or is beyond its range, where an element is missing, that is a mistake in `notes`,
-// and the copy lacks it. What is left out is a warning there: a sentence for each kind, with the
-// line on which it stands first.
+// written plainly; lists in it have a single space between their numbers. Each element of the copy
+// knows the element that it was made of, which outlives it. Where an attribute is not a finite
+// number, is missing, or is beyond its range, where an element is missing, that is a mistake in
+// `notes`, and the copy lacks it. Parts that are left out are warnings there: a sentence for each
+// kind, with the line on which it stands first.
 std::unique_ptr<tinyxml2::XMLDocument> UnderstoodPart(const tinyxml2::XMLDocument& document,
                                                       UrdfNotes* notes);
 

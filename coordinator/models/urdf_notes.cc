@@ -10,7 +10,7 @@ namespace tcs {
 namespace {
 
 constexpr std::size_t kMostMistakes = 20;
-// Of a kind: a file of 4 MiB has room for many.
+// The most sentences of a kind: a file of 4 MiB has room for many.
 constexpr std::size_t kMostListed = 1000;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What is said of a robot's file: its mistakes, all of them, and what was mended, by kind.
+// The notes about a robot's file: all its mistakes, and what was mended, by kind.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace tcs {
 
-// For whoever reads the file.
+// Remarks for the reader of the file.
 struct UrdfRemarks {
   std::vector<std::string> warnings;  // a sentence for each kind of thing
-  // Each thing by itself, of the kinds that have several.
+  // A sentence for each thing by itself, of the kinds that have several.
   std::vector<std::string> details;
 };
 
@@ -22,19 +22,19 @@ class UrdfNotes {
 
   const std::string& path() const { return path_; }
 
-  // Something that has no meaning; the file is refused in the end. 20 of them are kept.
+  // Something that has no meaning; the file is refused in the end. 20 mistakes are kept.
   void AddMistake(int line, std::string_view sentence);
   // "PATH:LINE: SENTENCE", in the order of the lines.
   std::vector<std::string> Mistakes() const;
   bool HasMistakes() const { return !mistakes_.empty(); }
 
-  // Something that was mended or left out. Of one `kind` a single sentence is said, of what is
-  // worst: the first one with the largest `how_bad`.
+  // Something that was mended or left out. Of one `kind` a single sentence is said, the worst one:
+  // the first with the largest `how_bad`.
   void AddMend(std::string_view kind, int line, std::string_view sentence, double how_bad = 0);
-  // A sentence of its own.
+  // Adds a sentence of its own.
   void AddWarning(int line, std::string_view sentence);
 
-  // To the end of `remarks`.
+  // Adds the sentences to the end of `remarks`.
   void Tell(UrdfRemarks* remarks) const;
 
  private:

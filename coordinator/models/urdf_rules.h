@@ -1,4 +1,4 @@
-// What URDF is made of, as far as tcs understands it: which elements stand in which, with which
+// The parts of URDF, as far as tcs understands it: which elements stand in which, with which
 // attributes of which kind.
 #pragma once
 
@@ -28,11 +28,11 @@ struct Rule {
   std::vector<Attribute> attributes;
   std::vector<Child> children{};
   bool has_one_child = false;  // exactly one of `children`
-  // Known, and nothing to the physics: looks.
+  // Elements that are known, and mean nothing to the physics: looks.
   std::vector<const char*> left_out_silently{};
 };
 
-// What has a name that people know it by.
+// The elements with a name that people know them by.
 extern const Rule kRobot, kLink, kJoint;
 
 }  // namespace tcs::urdf_rules

@@ -131,7 +131,7 @@ void UrdfSkeleton::FindRoot() {
   }
 }
 
-// With nothing that could be wrong but how it hangs together.
+// The model with nothing that could be wrong but how it hangs together.
 RobotModel UrdfSkeleton::Rigid() const {
   RobotModel rigid = model_;
   rigid.has_fixed_base = true;

@@ -16,12 +16,12 @@ namespace tcs {
 
 class UrdfSkeleton {
  public:
-  // Of a document of UnderstoodPart that WithCustoms has passed, and that outlives this. What is no
-  // tree of links is a mistake in `notes`; where that has some, the skeleton is not whole, and of
-  // no use.
+  // The skeleton of a document of UnderstoodPart that WithCustoms has passed, and that outlives
+  // this. Links that are no tree are a mistake in `notes`; where `notes` has mistakes, the skeleton
+  // is not whole, and of no use.
   UrdfSkeleton(const tinyxml2::XMLDocument& understood, UrdfNotes* notes);
 
-  // Names, kinds and ends; everything else is as it is in a new one.
+  // A model with names, kinds and ends; everything else is as in a new model.
   const RobotModel& model() const { return model_; }
   const tinyxml2::XMLElement& link(std::size_t index) const { return *links_[index]; }
   const tinyxml2::XMLElement& joint(std::size_t index) const { return *joints_[index]; }

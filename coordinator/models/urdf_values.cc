@@ -23,7 +23,7 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-// What liburdfdom would say on stderr, as long as this lives.
+// Takes what liburdfdom would say on stderr, as long as the object lives.
 class UrdfdomSpeech : public console_bridge::OutputHandler {
  public:
   UrdfdomSpeech() { console_bridge::useOutputHandler(this); }
@@ -170,7 +170,7 @@ JointLimits LimitsOf(const urdf::Joint& from, const Joint& joint, const XMLEleme
   return limits;
 }
 
-// Where a joint's child is that stands at `position`, seen from where it is at 0.
+// The pose of the child of a joint that stands at `position`, seen from the child's pose at 0.
 Pose MovedBy(const std::array<double, 3>& axis, double position, bool is_prismatic) {
   Pose pose;
   const double length = std::sqrt(Dot(axis, axis));
@@ -206,8 +206,8 @@ void TakeJoint(const urdf::Joint& from, const UrdfSkeleton& skeleton, const XMLE
   }
 }
 
-// What follows a leader allows it no more than its own limits do: the leader's range is what all
-// of them allow, and limits of the followers say nothing more.
+// A joint that follows a leader allows it no more than the follower's own limits do: the leader's
+// range is what all of them allow, and limits of the followers say nothing more.
 void JoinRanges(const UrdfSkeleton& skeleton, RobotModel* model, UrdfNotes* notes) {
   for (std::size_t i = 0; i < model->joints.size(); ++i) {
     Joint& joint = model->joints[i];
@@ -235,7 +235,7 @@ void JoinRanges(const UrdfSkeleton& skeleton, RobotModel* model, UrdfNotes* note
                                  follows(), leader.limits.lower, leader.limits.upper));
       continue;
     }
-    // Beyond what somebody has rounded.
+    // Only a difference beyond rounding by hand is noted.
     const double tolerance = 1e-3 * (common_upper - common_lower);
     const bool had_range =
         leader.kind != JointKind::kContinuous && leader.limits.lower != -kNoLimit;
@@ -245,7 +245,7 @@ void JoinRanges(const UrdfSkeleton& skeleton, RobotModel* model, UrdfNotes* note
                      fmt::format("{}, so its leader may go from {} to {} only", follows(),
                                  common_lower, common_upper));
     }
-    // A joint that turns for ever and leads one with limits does not.
+    // A continuous joint that leads a joint with limits does not turn for ever.
     if (leader.kind == JointKind::kContinuous) leader.kind = JointKind::kRevolute;
     leader.limits.lower = common_lower;
     leader.limits.upper = common_upper;

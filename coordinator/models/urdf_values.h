@@ -1,4 +1,4 @@
-// What the links and joints of a URDF file are, as liburdfdom reads them.
+// The values of the links and joints of a URDF file, as liburdfdom reads them.
 #pragma once
 
 #include <tinyxml2.h>
@@ -13,16 +13,16 @@
 
 namespace tcs {
 
-// What shapes need that is not in the file.
+// The things that shapes need and that are not in the file.
 struct UrdfSurroundings {
   const PackagePath& packages;
   MeshLibrary& meshes;
   std::string described_in;  // the file
 };
 
-// The skeleton's model with the values of `understood`, the document that it was made of. What
-// liburdfdom objects to, and a mesh that cannot be had, is a mistake in `notes`; what is hardly
-// meant, or mended, is a warning there.
+// The skeleton's model with the values of `understood`, the document that it was made of. A value
+// that liburdfdom objects to, and a mesh that cannot be had, is a mistake in `notes`; a value that
+// is hardly meant, or mended, is a warning there.
 RobotModel WithValues(const UrdfSkeleton& skeleton, const tinyxml2::XMLDocument& understood,
                       const UrdfSurroundings& surroundings, UrdfNotes* notes);
 

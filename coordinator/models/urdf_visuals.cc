@@ -30,7 +30,7 @@ std::optional<std::array<double, kCount>> NumbersOf(const XMLElement* element, c
   return numbers;
 }
 
-// All above 0.
+// The numbers of an attribute, if all are above 0.
 template <std::size_t kCount>
 std::optional<std::array<double, kCount>> SizesOf(const XMLElement* element, const char* name) {
   const auto sizes = NumbersOf<kCount>(element, name);
@@ -73,7 +73,7 @@ std::optional<std::array<double, 4>> ColourIn(const XMLElement* material) {
   return NumbersOf<4>(material == nullptr ? nullptr : material->FirstChildElement("color"), "rgba");
 }
 
-// Its own, or that of the robot's material of the same name.
+// The visual's own colour, or that of the robot's material of the same name.
 std::optional<std::array<double, 4>> ColourOf(const XMLElement& visual) {
   const XMLElement* material = visual.FirstChildElement("material");
   if (const auto own = ColourIn(material)) return own;
@@ -112,7 +112,7 @@ std::map<std::string, std::vector<Visual>> ReadVisuals(const std::string& path,
       if (const char* name = link->Attribute("name")) visuals[name] = VisualsOf(*link);
     }
   } catch (const ModelMistake&) {
-    // Gone, or changed, since the robot was read.
+    // The file is gone, or has changed, since the robot was read.
   }
   return visuals;
 }

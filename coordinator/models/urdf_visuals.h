@@ -1,4 +1,4 @@
-// What the links of a URDF file look like: its <visual> elements and their colours.
+// The looks of the links of a URDF file: the <visual> elements and their colours.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@ struct Visual {
   std::optional<std::array<double, 4>> colour_rgba{};  // 0 … 1
 };
 
-// Of each link of the file, by name; of `expanded`, which xacro has made of it, unless that is
-// empty. Neither the physics nor any program depends on how a robot looks: what cannot be
-// understood here, the file as a whole included, is left out without a word.
+// The visuals of each link of the file, by name; of `expanded`, which xacro has made of the file,
+// unless that is empty. Neither the physics nor any program depends on how a robot looks: a part
+// that cannot be understood here, or the file as a whole, is left out without a word.
 [[nodiscard]] std::map<std::string, std::vector<Visual>> ReadVisuals(
     const std::string& path, const std::string& expanded = {});
 

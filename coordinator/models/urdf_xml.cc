@@ -123,7 +123,7 @@ bool IsXacroFile(const std::string& path) {
 std::unique_ptr<tinyxml2::XMLDocument> ParseUrdf(const std::string& path,
                                                  const std::string& whole) {
   std::string text = whole;
-  // Some have been saved with the end of a string.
+  // Some files have been saved with the NUL at the end of a string.
   while (text.ends_with('\0')) text.pop_back();
   if (text.find('\0') != std::string::npos) {
     throw ModelMistake{path + ": holds NUL bytes, so it is no text in UTF-8; save it as that"};
@@ -134,8 +134,8 @@ std::unique_ptr<tinyxml2::XMLDocument> ParseUrdf(const std::string& path,
            fmt::format("this is not valid XML: {}; correct it", WhatIsWrong(document->ErrorID())));
   }
   for (const XMLNode* node = document->FirstChild(); node != nullptr; node = node->NextSibling()) {
-    // <!DOCTYPE … [ … ]>: entities that stand for others would make any size of a few lines. One
-    // without brackets defines none.
+    // <!DOCTYPE … [ … ]>: entities that stand for others would make any size of a few lines. A
+    // declaration without brackets defines none.
     if (node->ToUnknown() == nullptr) continue;
     if (std::string_view(node->Value()).find('[') == std::string_view::npos) continue;
     FailAt(path, node->GetLineNum(),

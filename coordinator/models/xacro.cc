@@ -22,7 +22,7 @@ namespace {
 
 constexpr unsigned kMostXacroSeconds = 60;
 constexpr std::size_t kMostExpandedBytes = 8 << 20;
-// What the child says begins with one of these.
+// The child's answer begins with one of these.
 constexpr char kExpanded = 'X', kFailed = 'F';
 
 std::string PathOfXacro() {
@@ -64,7 +64,7 @@ std::string WhatItSays(std::string text) {
   return end == std::string::npos ? text : text.substr(end + 1);
 }
 
-// In the child.
+// Runs in the child.
 std::string Run(std::vector<char*> words) {
   const UniqueFd out(memfd_create("xacro", MFD_CLOEXEC)), err(memfd_create("xacro", MFD_CLOEXEC));
   if (!out || !err) return std::string(1, kFailed) + "there is no memory for what it says";

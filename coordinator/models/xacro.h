@@ -10,8 +10,8 @@ namespace tcs {
 // Whether a program `xacro` is in PATH.
 bool HasXacro();
 
-// What `xacro PATH NAME:=VALUE …` writes, of `arguments` by name. Throws ModelMistake, "PATH: …",
-// with what it says where it fails, and where it takes longer than 60 s of processor time.
+// The output of `xacro PATH NAME:=VALUE …`, with `arguments` by name. Throws ModelMistake, "PATH:
+// …", with what xacro says where it fails, and where it takes longer than 60 s of processor time.
 std::string ExpandedByXacro(const std::string& path,
                             const std::map<std::string, std::string>& arguments);
 

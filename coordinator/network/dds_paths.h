@@ -1,5 +1,5 @@
-// What DDS messages meet between robots, where they go in shared memory (`dds: endpoints`): the
-// same links as packets.
+// The paths of DDS messages between robots, where the messages go in shared memory (`dds:
+// endpoints`): the same links as those of packets.
 //
 // A best-effort sample that is lost does not arrive. A reliable sample arrives later by one round
 // trip for each time that it is lost, because a reader asks for it again, and later reliable
@@ -20,7 +20,7 @@ namespace tcs {
 
 class DdsPaths final : public dds::HubPaths {
  public:
-  // On which robot a process is, by its number; the number of robots: on none.
+  // On which robot a process is, by its number; the number of robots: the process is on none.
   using RobotOf = std::function<std::size_t(std::uint32_t process)>;
 
   DdsPaths(Wire& wire, RobotOf robot_of) : wire_(wire), robot_of_(std::move(robot_of)) {}
@@ -29,13 +29,13 @@ class DdsPaths final : public dds::HubPaths {
   std::int64_t RoundTripNs(std::uint32_t one, std::uint32_t other) const override;
 
  private:
-  // Between two processes, when the last of each kind arrives.
+  // When the last message of each kind arrives, between two processes.
   struct Last {
     VirtualTime reliable, news;
   };
 
   bool AreApart(std::size_t from, std::size_t to) const;
-  // Never: it is lost each time.
+  // Never: the message is lost each time.
   VirtualTime SendAgain(NetworkLink& link, std::size_t bytes, VirtualTime arrives,
                         VirtualDuration round_trip);
 

@@ -7,7 +7,7 @@ namespace tcs {
 
 namespace {
 
-// What of a message goes into a packet: an Ethernet's, less the heads of IP and UDP.
+// The bytes of a message that go into a packet: an Ethernet packet's, less the heads of IP and UDP.
 constexpr std::size_t kMostPayload = 1472, kHeads = 28;
 
 }  // namespace
@@ -28,7 +28,7 @@ std::optional<VirtualTime> NetworkLink::Transmit(VirtualTime at, std::size_t byt
 std::optional<VirtualTime> NetworkLink::Send(VirtualTime at, std::size_t bytes) {
   ++counts_.packets;
   counts_.bytes += bytes;
-  // Each packet draws the same, whatever becomes of it.
+  // Every packet draws both numbers, whatever becomes of it.
   const double fate = random_.Uniform(), delay = random_.Uniform();
   const std::optional<VirtualTime> sent = Transmit(at, bytes);
   if (!sent) {

@@ -1,4 +1,4 @@
-// One direction between two robots: how long a packet takes, and whether it arrives.
+// A link is one direction between two robots: how long a packet takes, and whether it arrives.
 //
 // The model is a line with a queue before it. A packet waits until the packets before it have been
 // sent. Then it takes the time of its bits at the link's bandwidth, the latency, and a share of the
@@ -23,7 +23,7 @@ namespace tcs {
 class NetworkLink {
  public:
   struct Counts {
-    std::uint64_t packets = 0, bytes = 0;  // that were to be sent
+    std::uint64_t packets = 0, bytes = 0;  // that the link was to send
     std::uint64_t lost = 0, dropped = 0;   // of these packets
   };
 
@@ -31,14 +31,14 @@ class NetworkLink {
   NetworkLink(const LinkSpec& spec, std::uint64_t seed, std::uint64_t number)
       : spec_(spec), random_(seed, RandomPurpose::kFate, number) {}
 
-  // When a packet of so many bytes, sent at that time, arrives; nothing: it does not arrive. A
-  // packet that is sent for an earlier time than the packet before goes after that one.
+  // When a packet of so many bytes, sent at that time, arrives; nothing: the packet does not
+  // arrive. A packet that is sent for an earlier time than the packet before goes after that one.
   std::optional<VirtualTime> Send(VirtualTime at, std::size_t bytes);
 
-  // The same for a message that may be larger than a packet, and then goes in several.
+  // The same, for a message that may be larger than a packet, and then goes in several.
   struct Passage {
     VirtualTime arrives;
-    bool is_whole = true;  // none of its packets was lost or dropped
+    bool is_whole = true;  // no packet of the message was lost or dropped
   };
   Passage SendMessage(VirtualTime at, std::size_t bytes);
 
@@ -49,7 +49,7 @@ class NetworkLink {
   const Counts& counts() const { return counts_; }
 
  private:
-  // When its last bit has been sent; nothing: it is dropped.
+  // When the packet's last bit has been sent; nothing: the packet is dropped.
   std::optional<VirtualTime> Transmit(VirtualTime at, std::size_t bytes);
 
   LinkSpec spec_;

@@ -1,4 +1,4 @@
-// What the network reads of an IPv4 packet. Trusts nothing in it.
+// The parts of an IPv4 packet that the network reads. Trusts nothing in the packet.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace tcs {
 
-// One direction of a TCP connection.
+// A direction of a TCP connection.
 struct TcpFlow {
   std::uint32_t from = 0, to = 0;  // addresses, in the host's byte order
   std::uint16_t from_port = 0, to_port = 0;
@@ -20,7 +20,7 @@ struct TcpFlow {
 struct TcpSegment {
   TcpFlow flow;
   std::uint32_t sequence = 0, acknowledges = 0;
-  std::uint32_t length = 0;  // of what has sequence numbers: its bytes, SYN and FIN
+  std::uint32_t length = 0;  // of all that has sequence numbers: bytes, SYN and FIN
   bool is_syn = false, is_reset = false;
 
   std::uint32_t end() const { return sequence + length; }
@@ -29,10 +29,10 @@ struct TcpSegment {
 struct PacketHead {
   std::uint32_t from = 0, to = 0;  // addresses, in the host's byte order
   std::uint8_t protocol = 0;       // IPPROTO_*
-  std::optional<TcpSegment> tcp;   // of a whole one
+  std::optional<TcpSegment> tcp;   // of a whole segment
 };
 
-// Nothing if it is no IPv4 packet.
+// Nothing: `packet` is no IPv4 packet.
 std::optional<PacketHead> HeadOf(std::span<const std::byte> packet);
 
 }  // namespace tcs

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kLargestPacket = 65536;
 
-// Each robot by its name, and what every computer knows.
+// The file has each robot by its name, and the names that every computer knows.
 std::string HostsFile(const Scenario& scenario) {
   std::string text = "127.0.0.1\tlocalhost\n::1\tlocalhost ip6-localhost ip6-loopback\n";
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
@@ -65,7 +65,7 @@ void RobotNetwork::Take(std::size_t robot, VirtualTime at) {
   }
 }
 
-// What a kernel has no memory for is lost there.
+// A packet that a kernel has no memory for is lost there.
 void RobotNetwork::Arrive(VirtualTime now) {
   wire_->Arrive(now, [this](std::size_t robot, std::span<const std::byte> packet) {
     const ssize_t written = write(computers_[robot].device.get(), packet.data(), packet.size());

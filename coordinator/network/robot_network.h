@@ -28,11 +28,11 @@ class RobotNetwork {
   // The descriptor of each robot, in the scenario's order: readable once the robot has sent
   // something.
   std::vector<int> fds() const;
-  // Takes what the robot has sent, all of it at that time.
+  // Takes the packets that the robot has sent, all of them at that time.
   void Take(std::size_t robot, VirtualTime at);
 
   VirtualTime NextDue() const { return present() ? wire_->NextDue() : VirtualTime::Never(); }
-  // Delivers what has arrived by then.
+  // Delivers the packets that have arrived by then.
   void Arrive(VirtualTime now);
 
   // Null without a network.
@@ -42,8 +42,8 @@ class RobotNetwork {
   // Has a socket made where programs reach that address.
   void MakeAt(const std::string& address, const std::function<void()>& make) const;
 
-  // What each link was given to carry, and what of it did not arrive: network.csv in that folder.
-  // Empty on success, else one sentence.
+  // Writes network.csv in that folder: the packets that each link was given to carry, and those
+  // that did not arrive. Empty on success, else one sentence.
   [[nodiscard]] std::string WriteCounts(const std::string& folder) const;
 
   // Null without a network.

@@ -18,7 +18,7 @@ constexpr VirtualDuration kFirstTimeout = VirtualDuration::Seconds(1);
 
 constexpr std::uint32_t kHostsOfNet = 0xff;  // addresses that differ in these bits are one network
 
-// To all computers, or to those of a group.
+// Whether the packet is for all computers, or for those of a group.
 bool IsForSeveral(const PacketHead& head) {
   const std::uint32_t net = head.from | kHostsOfNet;
   return head.to == INADDR_BROADCAST || head.to == net || IN_MULTICAST(head.to);
@@ -39,7 +39,7 @@ Wire::Wire(const NetworkSpec& spec) : robots_(spec.addresses.size()) {
 
 void Wire::Send(std::size_t robot, std::span<const std::byte> packet, VirtualTime at) {
   const std::optional<PacketHead> head = HeadOf(packet);
-  // Who is in which group is no secret here, and the kernel tells of it when its timers run out.
+  // The membership of groups is no secret here, and the kernel tells of it when its timers run out.
   if (!head || head->protocol == IPPROTO_IGMP) return;
   if (head->tcp && head->tcp->is_syn && HasBegunBefore(*head->tcp)) return;
   const auto bytes = std::make_shared<const std::vector<std::byte>>(packet.begin(), packet.end());
@@ -54,7 +54,8 @@ void Wire::Send(std::size_t robot, std::span<const std::byte> packet, VirtualTim
 }
 
 // The first segment of a connection is the one that the kernel's own timer, in the host's time, may
-// send again: a second one means nothing, for what is lost of these arrives after its timeout.
+// send again: a second one means nothing, for a first segment that is lost arrives after its
+// timeout.
 bool Wire::HasBegunBefore(const TcpSegment& segment) {
   const auto [place, is_new] = begun_.try_emplace(segment.flow, segment.sequence);
   return !is_new && std::exchange(place->second, segment.sequence) == segment.sequence;

@@ -1,4 +1,4 @@
-// The packets between the robots: which way each goes, and when it arrives.
+// The packets between the robots: which way a packet goes, and when it arrives.
 //
 // Used by the coordinator's only thread. Pure: no system calls, no clock. Trusts nothing in
 // packets.
@@ -29,7 +29,7 @@ class Wire {
   void Send(std::size_t robot, std::span<const std::byte> packet, VirtualTime at);
 
   VirtualTime NextDue() const;
-  // Hands over what has arrived by `now`, in order.
+  // Hands over the packets that have arrived by `now`, in order.
   using Receive = std::function<void(std::size_t robot, std::span<const std::byte> packet)>;
   void Arrive(VirtualTime now, const Receive& receive);
 
@@ -62,7 +62,7 @@ class Wire {
   std::vector<NetworkLink> links_;                 // of every robot to every robot
   std::multimap<VirtualTime, Packet> on_the_way_;
   LostSegments lost_;
-  std::map<TcpFlow, std::uint32_t> begun_;  // with which sequence number
+  std::map<TcpFlow, std::uint32_t> begun_;  // the sequence number of each flow's beginning
 };
 
 }  // namespace tcs

@@ -1,4 +1,5 @@
-// What the kernel tells a program at its start (getauxval(3)), of any process.
+// The auxiliary vector, which the kernel gives a program at its start (getauxval(3)), of any
+// process.
 #pragma once
 
 #include <sys/types.h>
@@ -8,7 +9,7 @@
 
 namespace tcs {
 
-// By kind (AT_BASE and so on); empty if it cannot be read.
+// The values by kind (AT_BASE and so on); empty: the vector cannot be read.
 std::map<std::uint64_t, std::uint64_t> ReadAuxiliaryVector(pid_t pid);
 
 }  // namespace tcs

@@ -5,8 +5,8 @@
 
 namespace tcs {
 
-// `number` as /proc says it: "close (system call 3)"; "system call 999" where it is none of those
-// in which the kernel is known to hold threads.
+// `number` as /proc says it: "close (system call 3)"; "system call 999" where the call is none of
+// those in which the kernel is known to hold threads.
 std::string NameOfSystemCall(const std::string& number);
 
 }  // namespace tcs

@@ -19,27 +19,27 @@
 namespace tcs {
 
 struct WaitingRun {
-  std::int64_t ticket = 0;  // less than those that came later
+  std::int64_t ticket = 0;  // less than the tickets of runs that came later
   pid_t pid = 0;            // 0: this process cannot see it
-  std::vector<int> cpus;    // one of which it waits for
+  std::vector<int> cpus;    // the run waits for one of these
 };
 
 bool IsAwaited(int cpu, const std::vector<WaitingRun>& runs);
 
-// The runs that may take a CPU away from one that may use these.
+// The runs that may take a CPU away from a run that may use these CPUs.
 std::vector<WaitingRun> RivalsOf(const std::vector<int>& cpus, std::vector<WaitingRun> runs);
 
-// Those of the allowed CPUs, highest first, that a run may claim, in the order in which it tries
-// them: the highest that no run shares, then those that runs share, who move.
+// The CPUs of `allowed` (highest first) that a run may claim, in the order in which it tries them:
+// the highest that no run shares, then the CPUs that runs share; these runs move.
 std::vector<int> CpusToClaim(const std::vector<int>& allowed,
                              const std::function<bool(int)>& is_shared, bool leaves_others_some);
 
-// The CPU, of these, highest first, on which a run without real-time priorities goes: one that
-// nobody has claimed, and of those the one with the fewest others.
+// The CPU of `allowed` (highest first) on which a run without real-time priorities goes: a CPU that
+// nobody has claimed, and of those the one with the fewest other runs.
 int CpuToShare(const std::vector<int>& allowed, const std::function<bool(int)>& is_claimed,
                const std::function<std::size_t(int)>& sharers);
 
-// What a run says of its place among those that wait.
+// The words of a run for its place among the runs that wait.
 std::string PlaceInWords(std::size_t ahead);
 
 }  // namespace tcs

@@ -26,7 +26,7 @@ __asm__(
     "pushfq\n\tpushq %rcx\n\tpushq %rsi\n\tpushq %rdi\n\tpushq %r9\n\tpushq %r11\n\t"
     "subq $16, %rsp\n\t"
     "movl $1, %edi\n\tmovq %rsp, %rsi\n\t"
-    "xorl %r9d, %r9d\n\t"  // an argument that it does not have, and that marks the shim's own calls
+    "xorl %r9d, %r9d\n\t"  // no argument of this call; it marks the shim's own calls
     "movl $228, %eax\n\tsyscall\n\t"
     "imulq $1000000000, (%rsp), %rax\n\taddq 8(%rsp), %rax\n\t"
     "movabsq $0x7c57a7e17c57a7e1, %rcx\n"
@@ -69,8 +69,8 @@ Section UnwindSection(int fd, const Elf64_Ehdr& header) {
   return {};
 }
 
-// A file's segments as they lie in memory. Behind them is a table of its functions for those that
-// have none, as static programs.
+// A file's segments as they lie in memory. Behind them is a table of the functions, for files that
+// have none, such as static programs.
 class LaidOut {
  public:
   explicit LaidOut(const std::string& path) {
@@ -121,7 +121,7 @@ class LaidOut {
   LaidOut(const LaidOut&) = delete;
   LaidOut& operator=(const LaidOut&) = delete;
 
-  // Without segments where the file is no such program.
+  // The image has no segments where the file is no such program.
   const shm::Image& image() const { return image_; }
   const shm::UnwindTable& functions() const { return functions_; }
 
@@ -213,7 +213,7 @@ class Segment {
       code.Bytes({0x48, 0x8d, 0x64, 0x24, 0x80});           // lea -128(%rsp), %rsp
       code.Leading({0xe8}, reads);                          // call
       code.Bytes({0x48, 0x8d, 0xa4, 0x24, 0x80, 0, 0, 0});  // lea 128(%rsp), %rsp
-      // Of rdtscp: the first processor.
+      // rdtscp tells a processor, too: the first one.
       if (read[1] != 0x31) code.Bytes({0xb9, 0, 0, 0, 0});  // mov $0, %ecx
     });
     bytes.resize(writer.size());
@@ -254,7 +254,7 @@ bool WritePatches(pid_t pid, const CounterPatches& patches, std::uint64_t* first
   const UniqueFd memory(
       open(("/proc/" + std::to_string(pid) + "/mem").c_str(), O_RDWR | O_CLOEXEC));
   if (memory.get() < 0 || told[AT_PHDR] == 0) return false;
-  // Where a position-independent program lies its first segment header says.
+  // The first segment header of a position-independent program says where the program lies.
   std::uint64_t base = 0;
   for (std::uint64_t i = 0; i < told[AT_PHNUM]; ++i) {
     Elf64_Phdr segment{};

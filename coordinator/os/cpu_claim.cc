@@ -25,14 +25,15 @@ namespace tcs {
 
 namespace {
 
-// Between two looks of the run that is the next one; others look so much less often.
+// The time between two looks of the run that is the next one, and the longest such time: runs
+// further behind look less often.
 constexpr useconds_t kRetryUs = 20'000, kMostRetryUs = 200'000;
-// Of so many looks, one is at whether those ahead are stopped.
+// Of so many looks, one is at whether the runs ahead are stopped.
 constexpr int kLooksPerStopLook = 10;
-// Somebody who only looks (IsClaimed) has it for an instant.
+// A process that only looks (IsClaimed) has the lock for an instant.
 constexpr int kLookers = 3;
 constexpr useconds_t kLookUs = 200;
-// Seconds after which a run that waits says again for whom.
+// Seconds after which a run that waits says again which runs it waits for.
 constexpr time_t kSayAgainAfter = 30;
 
 std::string FolderOf(int cpu) { return "/sys/devices/system/cpu/cpu" + std::to_string(cpu); }
@@ -41,12 +42,13 @@ UniqueFd OpenFolderOf(int cpu) {
   return UniqueFd(open(FolderOf(cpu).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
 }
 
-// A lock belongs to all who have inherited the descriptor on which it was taken. One for each CPU,
-// for the processes that this one forks; in those, until they have claimed one.
+// A lock belongs to all processes that have inherited the descriptor on which it was taken. The map
+// has a descriptor for each CPU, for the processes that this one forks; in those, until they have
+// claimed a CPU.
 std::map<int, UniqueFd> g_shared_folders;
 constexpr std::size_t kMostShared = 256;
 
-// None: another process holds the claim. Without a descriptor: it cannot be made.
+// None: another process holds the claim. Without a descriptor: the claim cannot be made.
 std::optional<UniqueFd> TryToClaim(int cpu) {
   const auto shared = g_shared_folders.find(cpu);
   UniqueFd fd = shared == g_shared_folders.end()
@@ -60,7 +62,7 @@ std::optional<UniqueFd> TryToClaim(int cpu) {
   return fd;
 }
 
-// Who holds the lock on the CPU's folder; 0 if it is nobody, or nobody whom this process can see.
+// The process that holds the lock on the CPU's folder; 0: none, or none that this process can see.
 pid_t HolderOf(int cpu) {
   struct stat folder;
   if (stat(FolderOf(cpu).c_str(), &folder) != 0) return 0;
@@ -80,7 +82,7 @@ pid_t HolderOf(int cpu) {
   return 0;
 }
 
-// As it was typed; shortened.
+// The command as it was typed; shortened.
 std::string CommandOf(pid_t pid) {
   constexpr std::size_t kMost = 60;
   std::ifstream file("/proc/" + std::to_string(pid) + "/cmdline");
@@ -124,7 +126,7 @@ std::string WhoHas(const std::vector<int>& cpus) {
   return kOthersHaveThem + (who.empty() ? who : who + ")");
 }
 
-// By ^Z, for one. Whom this process cannot see is not.
+// A run may be stopped by ^Z, for one. A run that this process cannot see counts as not stopped.
 bool IsStopped(const WaitingRun& run) {
   const char state = run.pid == 0 ? 'R' : ThreadState(run.pid);
   return state == 'T' || state == 't';
@@ -147,7 +149,7 @@ time_t SecondsNow() {
   return now.tv_sec;
 }
 
-// Of those that nobody ahead waits for. None: others have them all.
+// Claims one of the CPUs that no run ahead waits for. None: other runs have them all.
 std::optional<CpuClaim> TryToClaimOneOf(const std::vector<int>& cpus,
                                         const std::vector<WaitingRun>& ahead) {
   for (const int cpu : cpus) {
@@ -192,7 +194,7 @@ bool LentCpu::TakeBack() {
   const auto is_for_others = [this] {
     return others_ != nullptr && IsAwaited(claim_.cpu, RivalsOf({claim_.cpu}, others_->Ahead()));
   };
-  // All processes that have inherited the descriptor hold it again.
+  // All processes that have inherited the descriptor hold the claim again.
   if (!is_for_others() && flock(claim_.fd.get(), LOCK_EX | LOCK_NB) == 0) {
     others_.reset();
     return true;
@@ -213,7 +215,7 @@ std::variant<CpuClaim, std::string> ClaimCpu(bool waits) {
       allowed, [&](int cpu) { return others.SharersOf(cpu) > 0; },
       !allowed.empty() && LeavesOthersSome(allowed.back()));
   if (waits) others.Queue(cpus);
-  std::optional<std::size_t> place;  // that this run has said
+  std::optional<std::size_t> place;  // the place that this run has said last
   const time_t since = SecondsNow();
   time_t said = since;
   for (int look = 1;; ++look) {

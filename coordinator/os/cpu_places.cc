@@ -7,7 +7,7 @@ namespace tcs {
 
 namespace {
 
-// One of each core, but not of the first one's; the last one, if there is no other core.
+// A CPU of each core, but not of the first CPU's; the last CPU, if there is no other core.
 std::vector<int> OneOfEachCore(const std::vector<CpuPlace>& cpus) {
   std::vector<int> chosen;
   std::vector<std::string> taken{cpus.front().core};
@@ -63,7 +63,7 @@ cpu_set_t PlaceOfRun(const std::vector<CpuPlace>& cpus, bool whole_cores, int ru
   } else if (whole_cores && runs <= RunsAtOnce(cpus, true)) {
     const std::vector<int> chosen = OneOfEachCore(cpus);
     for (const int cpu : chosen) allow(cpu);
-    // A claim leaves out the first of several, but for two (claim_order.h).
+    // A claim leaves out the first of several CPUs, but not of two (claim_order.h).
     if (chosen.size() > 1 || cpus.size() == 2) allow(first);
   } else {
     for (const CpuPlace& cpu : cpus) allow(cpu.number);
@@ -87,7 +87,7 @@ std::vector<int> FurtherCpusOf(const std::vector<CpuPlace>& cpus, int cpu, std::
 
 std::vector<int> CpusBesideHome(int home, int most) {
   if (most == 1) return {};
-  // None told: as many as there are.
+  // `most` is 0: as many as there are.
   return FurtherCpusOf(CpuPlaces(), home, static_cast<std::size_t>(most) - 1);
 }
 

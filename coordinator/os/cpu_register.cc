@@ -71,7 +71,7 @@ std::size_t CpuRegister::SharersOf(int cpu) const {
   return locks_.OfOthers(FirstSharerOf(cpu), FirstSharerOf(cpu) + kSharersOfOne - 1).size();
 }
 
-// Two on the same number would count as one: they are drawn.
+// Two runs on the same number would count as one: the numbers are drawn.
 void CpuRegister::ShareAs(int cpu) {
   std::random_device draws;
   const std::int64_t before = std::exchange(

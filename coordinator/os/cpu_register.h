@@ -1,12 +1,13 @@
-// Where the runs of a machine tell each other which CPUs they wait for and which they share: ranges
-// of the folder of all CPUs in /sys, whose locks end with their holder (range_locks.h). Everybody
-// who sees the same /sys sees them, whichever user it is. Nobody can hold up others by them more
-// than by locking the CPUs' folders themselves (cpu_claim.h).
+// The register by which the runs of a machine tell each other which CPUs they wait for and which
+// they share: ranges of the folder of all CPUs in /sys, whose locks end with their holder
+// (range_locks.h). Every process that sees the same /sys sees the locks, whichever user it is of. A
+// process can hold up others by such locks no more than by locking the CPUs' folders themselves
+// (cpu_claim.h).
 //
 //   ticket * 1024 + cpu              the run with this ticket waits for this CPU
 //   2^60 + cpu * 2^32 + any number   a run without real-time priorities is on this CPU
 //
-// One object in a process at a time: closing it lets go of what any other one has locked.
+// A process has one object at a time: closing the object lets go of what any other one has locked.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +25,15 @@ class CpuRegister {
   CpuRegister(const CpuRegister&) = delete;
   CpuRegister& operator=(const CpuRegister&) = delete;
 
-  // Comes to the end of those that wait, and stays there, for one of these CPUs, until it leaves.
+  // This run comes to the end of the queue for one of these CPUs, and stays in the queue until it
+  // leaves.
   void Queue(const std::vector<int>& cpus);
   void Leave();
-  // All that wait before this run, or all if it does not wait; first come, first.
+  // The runs that wait before this run, or all that wait if this run does not; first come, first.
   std::vector<WaitingRun> Ahead() const;
 
-  // From now on this run is on the CPU that `choose` names; it was on another one, perhaps. Nobody
-  // else chooses meanwhile.
+  // From now on this run is on the CPU that `choose` names; the run was on another one, perhaps. No
+  // other run chooses meanwhile.
   template <typename Choose>
   int Share(const Choose& choose) {
     const RangeLocks::Alone alone(locks_);
@@ -39,15 +41,15 @@ class CpuRegister {
     ShareAs(cpu);
     return cpu;
   }
-  // How many other runs are on it.
+  // How many other runs are on the CPU.
   std::size_t SharersOf(int cpu) const;
 
  private:
   void ShareAs(int cpu);
 
   RangeLocks locks_;
-  std::int64_t ticket_ = -1;     // -1: it does not wait
-  std::int64_t shared_at_ = -1;  // -1: it is nowhere
+  std::int64_t ticket_ = -1;     // -1: the run does not wait
+  std::int64_t shared_at_ = -1;  // -1: the run is on no CPU
 };
 
 }  // namespace tcs

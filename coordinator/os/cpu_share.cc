@@ -18,7 +18,7 @@ namespace {
 // A thread that makes others while it is looked for makes them on the CPU that it is to leave.
 constexpr int kMostMovePasses = 8;
 
-// Threads that are bound elsewhere stay there. False if there was none.
+// Threads that are bound elsewhere stay there. False if there was no thread to move.
 bool MoveThreadsOf(pid_t pid, int from, int to) {
   bool found = false;
   for (const pid_t tid : ThreadsOf(pid)) {
@@ -28,7 +28,7 @@ bool MoveThreadsOf(pid_t pid, int from, int to) {
 }
 
 void MoveAll(int from, int to) {
-  BindTo(0, to);  // first: here hardly anything is left to it
+  BindTo(0, to);  // first: hardly any time is left to this thread there
   bool found = true;
   for (int pass = 0; found && pass < kMostMovePasses; ++pass) {
     found = MoveThreadsOf(getpid(), from, to);

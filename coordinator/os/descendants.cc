@@ -19,9 +19,10 @@ namespace {
 constexpr int kKillTurns = 400, kMostKillTurns = 12'000;  // of 5 ms
 constexpr useconds_t kKillTurnUs = 5'000;
 
-// All at once, not only the children: one that spins at real-time priority keeps its killed parent
-// from the processor, and with it from dying, for ever. And above them all, where that is
-// permitted: nobody forks faster than it is killed. True if one of them waits for a processor.
+// Kills all descendants at once, not only the children: a process that spins at real-time priority
+// keeps its killed parent from the processor, and so from dying, for ever. This process is above
+// them all meanwhile, where that is permitted: then no process forks faster than it is killed. True
+// if a killed process waits for a processor.
 bool KillTree() {
   SetLevel(0, Level::kKernelOnly);
   bool waits = false;

@@ -1,7 +1,7 @@
-// The processes of a run: those that descend from this one.
+// The processes of a run: the descendants of this process.
 //
-// Who is a subreaper (prctl) gets the orphans among them, so that nobody leaves the tree: neither
-// by forking twice nor by a session of its own.
+// A subreaper (prctl) gets the orphans among its descendants, so that no process leaves the tree:
+// neither by forking twice nor by a session of its own.
 #pragma once
 
 #include <sys/types.h>
@@ -10,12 +10,12 @@
 
 namespace tcs {
 
-// All of them, as they are at this moment.
+// All descendants of `root`, as they are at this moment.
 std::vector<pid_t> DescendantsOf(pid_t root);
 
-// Kills and reaps what descends from this process, until nothing is left. Gives up after two
-// seconds (a process in the disk's hands does not die), or a minute where one that was killed has
-// yet to get a processor, to die by.
+// Kills and reaps the descendants of this process, until none is left. Gives up after two seconds
+// (a process in the disk's hands does not die), or a minute where a process that was killed has yet
+// to get a processor, to die by.
 void KillDescendants();
 
 }  // namespace tcs

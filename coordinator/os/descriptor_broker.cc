@@ -22,13 +22,14 @@ namespace tcs {
 
 namespace {
 
-// For an answer: of one that does not run, and of one that others of the host keep from running.
+// The waits for an answer: of a broker that does not run, and of one that other processes of the
+// host keep from running.
 constexpr std::int64_t kMostWaitMs = 2'000, kMostStarvedMs = 60'000;
-constexpr int kMostUnasked = 256;  // messages at a time: whoever floods is not listened to for ever
+constexpr int kMostUnasked = 256;  // messages at a time: a flood is not listened to for ever
 
 std::int64_t NowMs() { return HostClockNs(CLOCK_MONOTONIC) / 1'000'000; }
 
-// False if none is ready by then.
+// False if no descriptor is ready by then.
 template <std::size_t count>
 bool PollUntil(pollfd (&fds)[count], std::int64_t until_ms) {
   for (;;) {
@@ -54,8 +55,8 @@ std::unique_ptr<DescriptorBroker> DescriptorBroker::Make(std::function<void()> i
       std::move(sockets->ours), std::move(sockets->theirs), std::move(is_lost)));
 }
 
-// A broker has said that it is there. Whoever else sends that is taken for one, and is killed like
-// one; but not who is not of this run.
+// A broker has said that it is there. Any other process of this run that sends that is taken for a
+// broker, and is killed like one. A process that is not of this run is not.
 void DescriptorBroker::Adopt(pid_t sender) {
   if (sender <= 0 || !DescendsFrom(sender, getpid())) return;
   Kill();
@@ -63,8 +64,8 @@ void DescriptorBroker::Adopt(pid_t sender) {
   pid_ = pidfd_ ? sender : 0;
 }
 
-// What has come unasked: the first message of a new one. Answers that nobody waits for any more are
-// dropped.
+// Takes what has come unasked: the first message of a new broker. Answers that nobody waits for any
+// more are dropped.
 void DescriptorBroker::Hear() {
   for (int message = 0; message < kMostUnasked; ++message) {
     shm::BrokerAnswer answer{};
@@ -90,7 +91,7 @@ UniqueFd DescriptorBroker::Await(std::uint32_t serial) {
         until_ms = NowMs() + kMostWaitMs;
         continue;
       }
-      // It may have answered just now, and sleep again.
+      // The broker may have answered just now, and sleep again.
       if (!PollUntil(fds, NowMs())) {
         errno = ETIMEDOUT;
         return {};
@@ -125,7 +126,7 @@ UniqueFd DescriptorBroker::CopyOf(int number) {
       send(socket_.get(), &request, sizeof request, MSG_NOSIGNAL | MSG_DONTWAIT) == sizeof request;
   UniqueFd copy = is_sent ? Await(serial_) : UniqueFd();
   if (copy || (is_sent && errno != ETIMEDOUT && errno != ESRCH)) return copy;
-  // It may have been gone before it was asked.
+  // The broker may have been gone before it was asked.
   const int error = errno == EPIPE ? ESRCH : errno;
   End();
   is_lost_();

@@ -2,12 +2,13 @@
 // descriptors where pidfd_getfd is refused, as by the seccomp profile that Docker has for all
 // containers.
 //
-// The broker shares the client's table of descriptors, and so keeps all of them open: it has to be
-// gone before the client executes another program or its end is told to anybody. It is an orphan,
-// which the kernel gives to this process, so that the client has no child that it does not know.
+// The broker shares the client's table of descriptors, and so keeps all of them open: the broker
+// has to be gone before the client executes another program or its end is told to anybody. The
+// broker is an orphan, which the kernel gives to this process, so that the client has no child that
+// it does not know.
 //
-// For the coordinator's thread only. What a client says here is not trusted: at the worst it hands
-// over other descriptors of its own, or none.
+// For the coordinator's thread only. A client's answers here are not trusted: at the worst the
+// client hands over other descriptors of its own, or none.
 #pragma once
 
 #include <sys/types.h>
@@ -25,7 +26,7 @@ class DescriptorBroker {
   // A connection for a broker that is still to come; null: errno is set. `is_lost` is told each
   // time that a descriptor cannot be had because the broker does not answer any more.
   static std::unique_ptr<DescriptorBroker> Make(std::function<void()> is_lost);
-  // Ends it.
+  // Ends the broker.
   ~DescriptorBroker() { End(); }
   DescriptorBroker(const DescriptorBroker&) = delete;
   DescriptorBroker& operator=(const DescriptorBroker&) = delete;
@@ -33,16 +34,16 @@ class DescriptorBroker {
   // The client's end, given away once.
   UniqueFd TakeClientsEnd() { return std::move(clients_end_); }
 
-  // A copy of the client's descriptor; none: errno is set, EBADF if there is none of that number.
-  // Waits for the broker, which has the processor meanwhile, at most two seconds; a minute where
-  // others of the host keep it from running.
+  // A copy of the client's descriptor; none: errno is set, EBADF if the client has none of that
+  // number. Waits for the broker, which has the processor meanwhile, at most two seconds; a minute
+  // where other processes of the host keep the broker from running.
   UniqueFd CopyOf(int number);
 
   // Whether that process is the broker.
   bool Is(pid_t pid);
 
-  // Kills it, and waits until it has let go of all descriptors, at most two seconds. Another one
-  // may come: the client makes a new one with its next call.
+  // Kills the broker, and waits until it has let go of all descriptors, at most two seconds. A new
+  // broker may come: the client makes one with its next call.
   void End();
 
  private:
@@ -53,7 +54,7 @@ class DescriptorBroker {
   void Kill();
   UniqueFd Await(std::uint32_t serial);
 
-  UniqueFd socket_, clients_end_, pidfd_;  // without the last there is none at this time
+  UniqueFd socket_, clients_end_, pidfd_;  // without the last there is no broker now
   std::function<void()> is_lost_;
   pid_t pid_ = 0;
   std::uint32_t serial_ = 0;

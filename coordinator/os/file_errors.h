@@ -1,6 +1,6 @@
 // The sentences for result files that could not be written.
 //
-// Of errno as it is; 0: something that the system did not name.
+// The sentences are of errno as it is; 0: something that the system did not name.
 #pragma once
 
 #include <string.h>

@@ -7,19 +7,19 @@
 
 namespace tcs {
 
-// What a file outlives: the death of any process, or of the machine, too, which takes the disk's
-// time.
+// The events that a file outlives: the death of any process, or of the machine, too, which takes
+// the disk's time.
 enum class Withstands { kCrash, kPowerCut };
 
-// Whoever reads `path` finds all of the text or what was there before, whatever dies meanwhile.
-// Empty on success, else one sentence.
+// A process that reads `path` finds all of the text or what was there before, whatever dies
+// meanwhile. Empty on success, else one sentence.
 [[nodiscard]] std::string WriteWhole(const std::string& path, const std::string& text,
                                      Withstands what = Withstands::kPowerCut);
 
 // Makes the folder and those above it. Empty on success, else one sentence that names --out.
 [[nodiscard]] std::string MakeFolder(const std::string& path);
 
-// Its absolute path, without "." and "..", and without a slash at its end.
+// The absolute path of `path`, without "." and "..", and without a slash at its end.
 [[nodiscard]] std::string AbsolutePathOf(const std::string& path);
 
 // Removes the file, or the folder with all that is in it, as far as that is allowed.

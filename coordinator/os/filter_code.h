@@ -11,7 +11,7 @@ namespace tcs::filter {
 
 inline sock_filter Return(std::uint32_t action) { return {BPF_RET | BPF_K, 0, 0, action}; }
 
-// What stands at that offset of seccomp_data.
+// The word at that offset of seccomp_data.
 inline sock_filter Load(std::size_t offset) {
   return {BPF_LD | BPF_W | BPF_ABS, 0, 0, static_cast<std::uint32_t>(offset)};
 }

@@ -22,7 +22,7 @@ struct Mapping {
   unsigned major = 0, minor = 0;
 };
 
-// Of linux/fs.h since 6.11: one mapping, without all the text of the others.
+// The query of linux/fs.h since 6.11: it tells one mapping, without all the text of the others.
 struct MappingQuery {
   std::uint64_t size, query_flags, query_addr;
   std::uint64_t vma_start, vma_end, vma_flags, vma_page_size, vma_offset;

@@ -7,8 +7,8 @@
 
 namespace tcs {
 
-// What makes two futex addresses the same: the process and the address, or for memory that
-// processes share, the file and the offset.
+// The properties that make two futex addresses the same: the process and the address, or for memory
+// that processes share, the file and the offset.
 struct FutexKey {
   pid_t pid = 0;  // 0: shared
   std::uint64_t file = 0, address = 0;

@@ -29,23 +29,24 @@ GuardedState* g_state = nullptr;
 void ShareState() {
   void* page =
       mmap(nullptr, sizeof *g_state, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  static GuardedState alone;  // nobody would see its beats
+  static GuardedState alone;  // the keeper would not see its beats
   g_state = page != MAP_FAILED ? new (page) GuardedState : &alone;
   g_state->pid_max = MostPids();
 }
 
-// Passes signals on to the keeper until it has ended: how, as of waitpid.
+// Passes signals on to the keeper until it has ended. Returns how it has ended, as of waitpid.
 int AwaitKeeper(pid_t keeper, const sigset_t& awaited) {
   for (;;) {
     siginfo_t info{};
     const int signal = sigwaitinfo(&awaited, &info);
-    // ^C reaches the coordinator by itself; what somebody has sent, only this process may have.
+    // ^C reaches the coordinator by itself; a signal that somebody has sent may have reached this
+    // process only.
     const bool is_for_all = signal == SIGINT && info.si_code == SI_KERNEL;
     if (signal != SIGCHLD && signal > 0 && !is_for_all) kill(keeper, signal);
     int status = 0;
     while (waitpid(keeper, &status, WNOHANG | WUNTRACED) == keeper) {
       if (!WIFSTOPPED(status)) return status;
-      kill(keeper, SIGCONT);  // it is in nobody's job
+      kill(keeper, SIGCONT);  // the keeper is in nobody's job
     }
   }
 }
@@ -100,7 +101,8 @@ void RemoveNow(const std::string& path) {
   }
 }
 
-// By name: of a process that is not dumpable nobody may ask which program it executes.
+// By name: the program that a process executes may not be asked for where the process is not
+// dumpable.
 std::vector<pid_t> GuardsOf(pid_t coordinator) {
   std::vector<pid_t> guards;
   const std::string own = NameOf(coordinator);

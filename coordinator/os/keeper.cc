@@ -31,7 +31,7 @@ namespace tcs {
 
 namespace {
 
-// Between looks at whether a stop is one of the whole job.
+// The time between looks at whether a stop is one of the whole job.
 constexpr std::int64_t kStopTurnNs = 100'000'000;
 
 // True if a signal has stopped the process, or is about to.
@@ -49,7 +49,7 @@ class Keeper {
     LookLater();
   }
 
-  // Until the coordinator has ended: how, as of waitpid.
+  // Watches until the coordinator has ended. Returns how it has ended, as of waitpid.
   int Watch() {
     for (;;) {
       const int signal = NextSignal();
@@ -69,7 +69,7 @@ class Keeper {
     }
   }
 
-  // What a user has to know of an end by a signal; not twice.
+  // Says what a user has to know of an end by a signal; not twice.
   void SayHowItEnded(int status) const {
     if (!WIFSIGNALED(status) || has_killed_) return;
     const int signal = WTERMSIG(status);
@@ -86,7 +86,7 @@ class Keeper {
   }
 
  private:
-  // The next one that has come; 0 where nothing comes until something is to be looked at.
+  // The next signal that has come; 0: no signal comes until something is to be looked at.
   int NextSignal() const {
     const std::int64_t until_ns = std::min({look_at_ns_, stop_by_ns_, stop_turn_ns_});
     const std::int64_t left_ns = std::max<std::int64_t>(0, until_ns - HostClockNs(CLOCK_MONOTONIC));
@@ -105,8 +105,9 @@ class Keeper {
                                   std::int64_t{limits_.stop_within_s} * shm::kNsPerSecond);
   }
 
-  // A stop of the job, by ^Z for one, is the guardian's, too: then the coordinator goes on with it.
-  // Any other one would leave its clients at real-time priority with nobody above them.
+  // A stop of the job, by ^Z for one, is the guardian's, too: then the coordinator goes on with the
+  // guardian. Any other stop would leave the coordinator's clients at real-time priority with
+  // nobody above them.
   void LookAtStop() {
     const std::int64_t now_ns = HostClockNs(CLOCK_MONOTONIC);
     if (stop_turn_ns_ == kNever) {
@@ -158,12 +159,13 @@ class Keeper {
   void Kill(const std::string& sentence, int signal = SIGKILL) {
     stop_by_ns_ = look_at_ns_ = kNever;
     if (!std::exchange(has_killed_, true)) Say(sentence);
-    // In the kernel it may spin for something that its priority prevents.
+    // In the kernel the coordinator may spin for something that its priority prevents.
     LeaveRealTime(coordinator_);
     kill(coordinator_, signal);
   }
 
-  // It says where it computes, if it can (whereabouts.h): in the kernel it may not.
+  // The coordinator says where it computes, if it can (whereabouts.h): in the kernel it may be
+  // unable to.
   void KillWhereItIs(std::int64_t in_kernel_s) {
     Kill("the coordinator computes without making progress (" + std::to_string(in_kernel_s) +
              " of the last " + std::to_string(limits_.look_every_s) +
@@ -200,7 +202,7 @@ void EndWhatIsLeft(int status, GuardedState* state) {
   const int which = state->note.exchange(-1);
   if (which < 0) return;
   const Note& note = state->notes[which];
-  // Nobody could do anything about a disk that is full.
+  // A disk that is full could not be helped here.
   static_cast<void>(WriteWhole(note.path, std::string(note.text, note.size), Withstands::kCrash));
 }
 
@@ -228,13 +230,14 @@ void Keep(pid_t guardian, const GuardLimits& limits, GuardedState* state,
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != keeper) _exit(127);
     TellWhereItDies();
-    // In a script's background it is ignored, and one that comes before it is waited for were lost.
+    // In a script's background SIGINT is ignored, and a SIGINT that comes before it is waited for
+    // would be lost.
     signal(SIGINT, SIG_DFL);
     const int status = coordinate();
     fflush(nullptr);  // from the terminal's foreground
-    // With the last process of a group whose parent is in another one, the kernel sends SIGHUP to
-    // all of it if one is stopped there: to the script that called tcsim, where no shell controls
-    // jobs.
+    // When the last process of a group goes whose parent is in another group, the kernel sends
+    // SIGHUP to the whole group if a process is stopped there: to the script that called tcsim,
+    // where no shell controls jobs.
     setpgid(0, keeper);
     exit(status);
   }
@@ -243,7 +246,7 @@ void Keep(pid_t guardian, const GuardLimits& limits, GuardedState* state,
         "; end some, or raise `ulimit -u`");
     _exit(2);
   }
-  // It speaks from the background of a terminal that may not want that.
+  // The keeper speaks from the background of a terminal that may not want that.
   for (const int ignored : {SIGQUIT, SIGPIPE, SIGTTOU}) signal(ignored, SIG_IGN);
   prctl(PR_SET_DUMPABLE, 0);
   Keeper watch(guardian, coordinator, limits, state);

@@ -1,5 +1,5 @@
-// What the kernel has counted for a process or a thread besides its time, as getrusage tells it of
-// the caller itself.
+// The kernel's counts for a process or a thread besides its time, as getrusage tells them of the
+// caller itself.
 #pragma once
 
 #include <sys/types.h>
@@ -15,10 +15,11 @@ struct KernelUsage {
   std::int64_t waits = 0, preemptions = 0;
 };
 
-// All zero where it has ended. Of a process with all its threads that live.
+// All zero where the process or thread has ended. The usage of a process includes all its threads
+// that live.
 KernelUsage KernelUsageOfProcess(pid_t pid);
 KernelUsage KernelUsageOfThread(pid_t pid, pid_t tid);
-// Of its children that it has waited for.
+// The usage of the process's children that it has waited for.
 KernelUsage KernelUsageOfChildren(pid_t pid);
 
 }  // namespace tcs

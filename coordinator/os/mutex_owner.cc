@@ -6,7 +6,8 @@ namespace tcs {
 
 namespace {
 
-// As the C library begins a mutex: what waiters wait at, how often it is locked, who has it.
+// The beginning of a mutex of the C library: the word that waiters wait at, how often the mutex is
+// locked, and its owner.
 struct MutexBegin {
   std::int32_t word, count, owner;
 };

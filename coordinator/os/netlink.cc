@@ -38,7 +38,7 @@ class Message {
   void Add(std::uint16_t type, const Value& value) {
     Add(type, &value, sizeof value);
   }
-  // What is added until it ends is inside.
+  // Attributes that are added until End are inside.
   std::size_t Begin(std::uint16_t type) {
     const std::size_t begun = used_;
     Add(type, nullptr, 0);

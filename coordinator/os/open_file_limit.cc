@@ -11,7 +11,8 @@ namespace {
 
 std::optional<rlimit> g_files_before;
 
-// How many no process is given. Of a small limit a quarter, so that somebody is followed at all.
+// How many files no process is given. Of a small limit a quarter, so that some process is followed
+// at all.
 constexpr rlim_t kForTheEnd = 32;
 
 rlim_t MostFiles() {

@@ -19,17 +19,17 @@ namespace tcs {
 
 namespace {
 
-// Of kcmp's two arguments that are of this process: 0 if they are the same; -1: errno is set.
+// Compares two files of this process by kcmp: 0 if they are the same; -1: errno is set.
 long CompareOwn(int type, int one, std::uint64_t other) {
   const pid_t own = getpid();
   return syscall(SYS_kcmp, own, own, type, one, other);
 }
 
-// As the seccomp profile does that Docker has for all containers.
+// kcmp is refused, as by the seccomp profile that Docker has for all containers.
 bool IsRefused(long compared) { return compared < 0 && (errno == EPERM || errno == ENOSYS); }
 
-// What is in an epoll set is known there by its open file and its number: a second one that is the
-// same in both is refused.
+// An entry of an epoll set is known there by its open file and its number: a second entry that is
+// the same in both is refused.
 bool IsInSet(int epoll_fd, int fd) {
   epoll_event none{};
   if (epoll_ctl(epoll_fd, EPOLL_CTL_ADD, fd, &none) != 0) return errno == EEXIST;
@@ -47,7 +47,7 @@ bool IsSameFileBySet(int one, int other) {
   return dup3(other, number.get(), O_CLOEXEC) >= 0 && IsInSet(set.get(), number.get());
 }
 
-// In a child, whose descriptors can have any number.
+// Works in a child, whose descriptors can have any number.
 bool IsAboutBySet(int epoll_fd, const EpollEntry& entry, int fd) {
   const pid_t child = fork();
   if (child == 0) {

@@ -32,7 +32,7 @@ namespace {
 // Steps that have a mend of their own.
 constexpr char kTun[] = "/dev/net/tun", kSettingsStep[] = "/proc/sys/net";
 constexpr char kNamespacesStep[] = "unshare", kOwnMountsStep[] = "mount --make-rslave /";
-// What may be in the way of a user namespace.
+// Obstacles that may be in the way of a user namespace.
 constexpr char kUserStep[] = "user namespace", kFilterStep[] = "a seccomp filter on unshare";
 constexpr char kChrootStep[] = "user namespace, in a chroot";
 constexpr char kMostStep[] = "user.max_user_namespaces";
@@ -46,15 +46,15 @@ constexpr std::uint32_t kDeviceQueue = 32768;  // packets; more than one call se
 constexpr std::uint32_t kNoTimeoutMs = 120'000;
 constexpr std::uint32_t kHostsOfNet = 0xff;  // as network/wire.cc has them
 
-// About the interface of that name.
+// A request about the interface of that name.
 ifreq RequestFor(const char* name) {
   ifreq request{};
   snprintf(request.ifr_name, sizeof request.ifr_name, "%s", name);
   return request;
 }
 
-// What the host's time would have a part in, and what makes up for it. Kernels that do not have one
-// of these do not have what it turns off, either.
+// Settings for things that the host's time would have a part in, and for what makes up for them. A
+// kernel without one of these settings does not have what the setting turns off, either.
 struct Setting {
   const char* path;
   const char* value;
@@ -76,7 +76,7 @@ constexpr Setting kSettings[] = {
     {"ipv4/icmp_ratelimit", "0"},
     {"ipv4/conf/all/rp_filter", "0"},
     {"ipv4/conf/default/rp_filter", "0"},
-    // Its eth0 would otherwise announce itself now and then.
+    // The computer's eth0 would otherwise announce itself now and then.
     {"ipv6/conf/default/disable_ipv6", "1"},
 };
 
@@ -85,14 +85,15 @@ bool Put(const std::string& path, const std::string& text) {
   return fd && write(fd.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
 }
 
-// False where none can be changed, as in a container: TCP would go by the host's clock.
+// False where no setting can be changed, as in a container: TCP would go by the host's clock.
 bool ChangeSettings() {
   for (const Setting& setting : kSettings) {
     if (!Put(std::string("/proc/sys/net/") + setting.path, setting.value) && errno == EROFS) {
       return false;
     }
   }
-  // Who may send an echo request without being root; a user namespace has only one's own group.
+  // The groups that may send an echo request without being root; a user namespace has only the
+  // process's own group.
   const std::string own = std::to_string(getegid());
   if (!Put("/proc/sys/net/ipv4/ping_group_range", "0 2147483647")) {
     Put("/proc/sys/net/ipv4/ping_group_range", own + " " + own);
@@ -100,13 +101,14 @@ bool ChangeSettings() {
   return true;
 }
 
-// What the new computer tells its maker: which step has failed, or a descriptor.
+// The message of the new computer to its maker: which step has failed, or a descriptor.
 struct Told {
   int error = 0;
   char step[60] = "";
 };
 
-// One who makes it from inside, in a process of its own. Each step returns false with errno.
+// Makes the computer from inside, in a process of its own. A step that fails returns false with
+// errno.
 class Maker {
  public:
   explicit Maker(const ComputerRequest& request) : request_(request) {}
@@ -125,7 +127,8 @@ class Maker {
     if (errno != 0) return "setting up the interface";
     if (!Raise("lo") || !Raise(kDevice)) return "raising the interfaces";
     if (!GiveAddresses(netlink, index)) return "addresses and routes";
-    // What is mounted here stays here. In a chroot whose / is no mount point the kernel refuses it.
+    // Mounts that are made here stay here. In a chroot whose / is no mount point the kernel refuses
+    // this.
     if (mount(nullptr, "/", nullptr, MS_REC | MS_SLAVE, nullptr) != 0) return kOwnMountsStep;
     return GiveFiles() ? nullptr : "mounting /etc/hosts";
   }
@@ -169,7 +172,7 @@ class Maker {
     return errno == 0;
   }
 
-  // They are written where nobody else looks, then shown in the places of the host's.
+  // The files are written where nobody else looks, then shown in the places of the host's files.
   bool GiveFiles() {
     constexpr char kPlace[] = "/tmp";
     if (mount("tmpfs", kPlace, "tmpfs", MS_NOSUID | MS_NODEV, "mode=0755") != 0) return false;
@@ -231,7 +234,7 @@ char FirstCharOf(const char* path) {
   return first;
 }
 
-// As of a chroot into an ordinary folder.
+// True, for one, in a chroot into an ordinary folder.
 bool IsRootNoMountPoint() {
   std::ifstream mounts("/proc/self/mountinfo");
   for (std::string line; std::getline(mounts, line);) {
@@ -247,7 +250,7 @@ const char* WhyNoUserNamespace(int error) {
   if (error == ENOSPC) {
     return FirstCharOf("/proc/sys/user/max_user_namespaces") == '0' ? kMostStep : kNamespacesStep;
   }
-  // To leave nothing is nothing to the kernel.
+  // The kernel never refuses a call that leaves no namespace: only a filter does.
   if (unshare(0) != 0) return kFilterStep;
   if (FirstCharOf("/proc/sys/kernel/unprivileged_userns_clone") == '0') return kSwitchStep;
   if (FirstCharOf("/proc/sys/kernel/apparmor_restrict_unprivileged_userns") == '1') {

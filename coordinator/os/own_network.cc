@@ -26,8 +26,8 @@ bool Put(const char* path, const std::string& text) {
   return fd && write(fd.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
 }
 
-// Who has no right to make a network has it in a user namespace, where everybody stays who they
-// are.
+// A process that has no right to make a network has that right in a user namespace, where its user
+// and group stay what they are.
 bool MakeNetwork() {
   if (unshare(CLONE_NEWNET) == 0) return true;
   const std::string user = std::to_string(geteuid()), group = std::to_string(getegid());
@@ -37,8 +37,8 @@ bool MakeNetwork() {
          Put("/proc/self/gid_map", group + " " + group + " 1");
 }
 
-// With it come 127.0.0.1 and its routes. Multicast goes there, too: programs that find each other
-// by it have no other interface.
+// With the interface come 127.0.0.1 and its routes. Multicast goes there, too: programs that find
+// each other by multicast have no other interface.
 bool RaiseLoopback() {
   const UniqueFd fd(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!fd) return false;
@@ -65,7 +65,7 @@ bool RaiseLoopback() {
 
 constexpr int kLosesRealTime = 255;  // not an errno
 
-// The exit status of a process that tries it: 0, an errno, or kLosesRealTime.
+// The exit status of a process that tries that: 0, an errno, or kLosesRealTime.
 [[noreturn]] void Try() {
   const bool had_real_time = AskForRealTime().error == 0;
   if (!EnterOwnNetwork().empty()) _exit(errno == 0 ? EPERM : errno);

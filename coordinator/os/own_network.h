@@ -1,5 +1,6 @@
 // A network of its own for a process and all that it starts: programs with the same fixed ports run
-// side by side, and meet nobody else on this machine. It has a loopback interface and nothing else.
+// side by side, and meet nobody else on this machine. The network has a loopback interface and
+// nothing else.
 #pragma once
 
 #include <string>

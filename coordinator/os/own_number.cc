@@ -15,7 +15,7 @@ namespace tcs {
 
 namespace {
 
-// 0: it cannot be seen.
+// 0: the namespace cannot be seen.
 std::uint64_t NamespaceOf(const char* thread) {
   char path[64];
   snprintf(path, sizeof path, "/proc/%s/ns/pid", thread);

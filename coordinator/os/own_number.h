@@ -1,5 +1,5 @@
-// How threads and processes know themselves where they live in a PID namespace of their own, as
-// sandboxes and launchers make them: by other numbers than tcsim knows them by.
+// The numbers by which threads and processes know themselves in a PID namespace of their own, as
+// sandboxes and launchers make them. tcsim knows these threads and processes by other numbers.
 #pragma once
 
 #include <sys/types.h>
@@ -13,10 +13,12 @@ struct OwnNumber {
   std::uint64_t pid_namespace = 0;  // 0: tcsim's, where the number is the same
 };
 
-// Of a thread, by tcsim's number of it. What the kernel does not tell is taken to be the same.
+// The number of a thread for itself, by tcsim's number of it. A number that the kernel does not
+// tell is taken to be the same.
 OwnNumber OwnNumberOf(pid_t tid);
 
-// The thread of that process, or its child, that has that number there; 0: none.
+// The thread or the child of process `pid` that has `number` in its own namespace; 0: there is
+// none.
 pid_t ThreadByOwnNumber(pid_t pid, pid_t number);
 pid_t ChildByOwnNumber(pid_t pid, pid_t number);
 

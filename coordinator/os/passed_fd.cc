@@ -30,7 +30,7 @@ PassedMessage::PassedMessage(void* bytes, std::size_t size, std::span<const int>
 
 Passed ReceivePassed(int socket, void* to, std::size_t size, int flags) {
   iovec iov{to, size};
-  // What does not fit is closed by the kernel.
+  // Descriptors that do not fit are closed by the kernel.
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int)) + CMSG_SPACE(sizeof(ucred))];
   msghdr message{};
   message.msg_iov = &iov;
@@ -50,7 +50,7 @@ Passed ReceivePassed(int socket, void* to, std::size_t size, int flags) {
       memcpy(&sender, CMSG_DATA(header), sizeof sender);
       passed.sender = sender.pid;
     } else if (header->cmsg_type == SCM_RIGHTS) {
-      // Room for a number of them may be left where no credentials came.
+      // Room for several descriptors may be left where no credentials came.
       for (std::size_t at = CMSG_LEN(0); at + sizeof(int) <= header->cmsg_len; at += sizeof(int)) {
         int fd = -1;
         memcpy(&fd, CMSG_DATA(header) + (at - CMSG_LEN(0)), sizeof fd);

@@ -21,15 +21,15 @@ namespace {
 using filter::LoadArgument;
 using filter::Return;
 
-// A call that names a process in an argument. Where it sends a signal, also where that is: the
-// signal 0 is none.
+// A call that names a process in an argument. For a call that sends a signal, also the argument
+// with the signal: the signal 0 is none.
 struct NamingCall {
   std::uint32_t number;
   std::size_t process;
   int signal = -1;  // no argument
 };
 
-// In what the calls differ between the architectures: their numbers.
+// The calls' numbers, in which the architectures differ.
 struct Numbers {
   std::vector<NamingCall> naming;
   std::vector<std::uint32_t> unfollowed;  // by a pidfd; or to the scheduler, which is the robot's
@@ -84,7 +84,7 @@ using Code = std::vector<sock_filter>;
 
 void Append(Code* code, const Code& more) { code->insert(code->end(), more.begin(), more.end()); }
 
-// `body` for one call; whatever it does not return from goes on with the number.
+// `body` for one call; a call from which `body` does not return goes on with the number.
 void AppendFor(Code* code, std::uint32_t number, Code body) {
   body.push_back(LoadNumber());
   code->push_back(Jump(BPF_JEQ, number, 0, body.size()));
@@ -126,7 +126,7 @@ std::vector<sock_filter> Protection(CallTable table, const std::vector<pid_t>& g
     Append(&body, ReturnIfAny(processes, action));
     AppendFor(&code, call.number, body);
   }
-  // All of a group, or everybody.
+  // A signal to all of a group, or to every process.
   AppendFor(&code, numbers.kill,
             {LoadArgument(0), Jump(BPF_JEQ, 0, 1, 0), Jump(BPF_JGE, 1u << 31, 0, 1), ask});
   AppendFor(&code, numbers.ptrace, {LoadArgument(0), Jump(BPF_JEQ, PTRACE_TRACEME, 0, 1), ask});

@@ -13,7 +13,7 @@ namespace {
 
 constexpr useconds_t kTurnUs = 100;
 constexpr int kMostTurns = 10'000;
-// Of somebody who locks ranges for other reasons, as many as it likes.
+// A process may lock ranges for other reasons, as many as it likes: no more than these are listed.
 constexpr std::size_t kMostRanges = 4096;
 
 struct flock RangeOf(short type, std::int64_t first, std::int64_t last) {
@@ -39,7 +39,8 @@ void RangeLocks::Unlock(std::int64_t first, std::int64_t last) {
   fcntl(fd_.get(), F_SETLK, &range);
 }
 
-// The kernel names one of those that touch a range; on both sides of it there may be more.
+// The kernel names one of the locks that touch a range; on both sides of that lock there may be
+// more.
 std::vector<LockedRange> RangeLocks::OfOthers(std::int64_t first, std::int64_t last) const {
   std::vector<LockedRange> found;
   std::vector<std::pair<std::int64_t, std::int64_t>> todo{{first, last}};

@@ -1,10 +1,11 @@
 // Locks on ranges of a file's bytes, by which processes that know nothing of each other tell each
-// other small numbers: who holds which range can be asked, and the kernel lets go of whatever a
-// process held when that ends, however it ends. The file is opened for reading only, so that
-// everybody may lock ranges of a file that is root's, and the locks keep nobody from anything.
+// other small numbers. A process can ask which process holds which range. The kernel lets go of all
+// locks of a process when the process ends, however it ends. The file is opened for reading only,
+// so that everybody may lock ranges of a file that is root's, and the locks keep nobody from
+// anything.
 //
-// They are the process's (POSIX): forks have none of them, and a process does not see its own. No
-// other descriptor of the same file may be closed while they are held.
+// The locks are the process's (POSIX): forks have none of them, and a process does not see its own.
+// No other descriptor of the same file may be closed while locks are held.
 #pragma once
 
 #include <sys/types.h>
@@ -30,11 +31,12 @@ class RangeLocks {
   bool present() const { return fd_.get() >= 0; }
   void Lock(std::int64_t first, std::int64_t last);
   void Unlock(std::int64_t first, std::int64_t last);
-  // Those that touch this range; by their first bytes.
+  // Other processes' ranges that touch this range; by their first bytes.
   std::vector<LockedRange> OfOthers(std::int64_t first, std::int64_t last) const;
 
-  // Only one process at a time is within: what it has seen is still true when it locks. Who was
-  // stopped within, or holds the file for other reasons, keeps others out for a second at most.
+  // Only one process at a time is within: what this process has seen is still true when it locks. A
+  // process that was stopped within, or holds the file for other reasons, keeps others out for a
+  // second at most.
   class Alone {
    public:
     explicit Alone(const RangeLocks& locks);

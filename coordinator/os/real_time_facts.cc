@@ -23,7 +23,7 @@ static_assert(kRealTimeNeeded == static_cast<int>(Level::kKernelOnly));
 
 namespace {
 
-// What the child finds out, as it passes through a pipe.
+// The child's findings, as they pass through a pipe.
 struct RealTimeAnswers {
   int error;
   bool reaches_kernel, can_raise_limit;
@@ -31,7 +31,7 @@ struct RealTimeAnswers {
 
 RealTimeAnswers TryRealTime() {
   RealTimeAnswers answers{};
-  LeaveRealTime(0);  // one who already has it may keep it without any right
+  LeaveRealTime(0);  // a process that already has it may keep it without any right
   // The kernel refuses a call without a parameter as invalid, before it looks at rights. A filter
   // does not see what the parameter points to, and refuses this call like the next one.
   answers.reaches_kernel =
@@ -81,7 +81,7 @@ std::uint64_t NumberIn(const std::string& status, const std::string& name, int b
              : std::strtoull(status.c_str() + at + name.size() + 2, nullptr, base);
 }
 
-// The first one maps all numbers to themselves.
+// The first user namespace maps all numbers to themselves.
 bool InUserNamespace() {
   std::ifstream map("/proc/self/uid_map");
   unsigned long inside = 0, outside = 0, count = 0;

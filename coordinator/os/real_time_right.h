@@ -1,6 +1,6 @@
-// What keeps a process from SCHED_FIFO, and how to mend it. Pure: facts in, words out. The facts
-// come from the kernel, which is asked (real_time_facts.h): who somebody is does not tell. Root may
-// be refused, and an ordinary user permitted.
+// The obstacles that keep a process from SCHED_FIFO, and how to mend them. Pure: facts in, words
+// out. The facts come from the kernel, which is asked (real_time_facts.h): the user's identity does
+// not tell. Root may be refused, and an ordinary user permitted.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,8 @@ namespace tcs {
 // real-time: cgroups of version 1 on kernels with real-time groups.
 struct RealTimeGroup {
   std::string folder;       // of the group's files
-  long budget_us = 0;       // its cpu.rt_runtime_us
-  std::string with_budget;  // the nearest group above that has one: its folder; empty: none
+  long budget_us = 0;       // the group's cpu.rt_runtime_us
+  std::string with_budget;  // the folder of the nearest group above that has a budget; empty: none
 };
 
 struct RealTimeFacts {
@@ -22,12 +22,12 @@ struct RealTimeFacts {
   bool reaches_kernel = true;   // a call that only the kernel itself calls invalid was called so
   bool is_filtered = false;     // by seccomp, be it this call or another one
   bool has_capability = false;  // CAP_SYS_NICE is in effect
-  bool may_get_capability = false;  // it is in the bounding set
+  bool may_get_capability = false;  // CAP_SYS_NICE is in the bounding set
   bool in_user_namespace = false;   // where that capability does not count
   bool is_root = false;             // only for the wording: "run tcsim as root" is nothing for root
   unsigned long limit = 0;          // RLIMIT_RTPRIO
-  bool can_raise_limit = false;     // to what is needed; it was tried
-  std::optional<RealTimeGroup> group;  // none: there are no such groups, or it is not seen
+  bool can_raise_limit = false;     // to what is needed; a child has tried it
+  std::optional<RealTimeGroup> group;  // none: there are no such groups, or the group is not seen
 };
 
 // The priority that a run needs, that of Level::kKernelOnly.
@@ -41,15 +41,15 @@ enum class RealTimeObstacle {
   kUnknown,   // none of these
 };
 
-// All that is in the way; empty if it is permitted.
+// All obstacles in the way; empty if SCHED_FIFO is permitted.
 std::vector<RealTimeObstacle> ObstaclesOf(const RealTimeFacts& facts);
 
-// This host has given its user the right to some real-time priority, by a capability or a limit,
-// whether the kernel lets the user have it here or not.
+// Whether this host has given its user the right to some real-time priority, by a capability or a
+// limit, whether the kernel lets the user have it here or not.
 bool GivesRealTime(const RealTimeFacts& facts);
 
-// Clauses: what is in the way, and what would mend it, which begins with a verb. Empty if it is
-// permitted.
+// Clauses: the obstacles in the way, and their remedies, which begin with a verb. Empty if
+// SCHED_FIFO is permitted.
 std::string WhyNoRealTime(const RealTimeFacts& facts);
 std::string MendOfRealTime(const RealTimeFacts& facts);
 

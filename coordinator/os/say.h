@@ -1,4 +1,4 @@
-// What tcsim says on its stderr.
+// The sentences of tcsim on its stderr.
 #pragma once
 
 #include <cstdio>

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSealFutureWrite = 0x0010;  // F_SEAL_FUTURE_WRITE, of Linux 5.1
 
-// Sealed only once it is mapped, for then nobody else maps it for writing.
+// The memory is sealed only once it is mapped, for then nobody else maps it for writing.
 SharedMemory Make(const char* name, std::size_t size, int seals) {
   UniqueFd fd(memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!fd || fchmod(fd.get(), 0600) != 0 || ftruncate(fd.get(), static_cast<off_t>(size)) != 0) {

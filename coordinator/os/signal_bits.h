@@ -9,7 +9,8 @@ namespace tcs {
 
 constexpr std::uint64_t SignalBit(int signal) { return std::uint64_t{1} << (signal - 1); }
 
-// What stops a process that does not catch or ignore it; SIGSTOP it can do neither with.
+// The signals that stop a process that does not catch or ignore them. A process can do neither with
+// SIGSTOP.
 constexpr std::uint64_t kStopSignals =
     SignalBit(SIGSTOP) | SignalBit(SIGTSTP) | SignalBit(SIGTTIN) | SignalBit(SIGTTOU);
 

@@ -14,7 +14,7 @@ namespace tcs {
 
 namespace {
 
-// In the order of the network, as sock_diag has them.
+// Address and port are in the order of the network, as sock_diag has them.
 struct Place {
   std::uint32_t address[4] = {};
   std::uint16_t port = 0;
@@ -82,8 +82,8 @@ std::optional<std::uint64_t> Ask(const Request& request) {
 
 }  // namespace
 
-// Of TCP the place of the server is the source. Of UDP the two are the other way round, and the
-// server may be connected to the socket that sends.
+// For TCP the place of the server is the source. For UDP server and client are the other way round,
+// and the server may be connected to the socket that sends.
 std::optional<std::uint64_t> ServerOf(int fd, const sockaddr_storage& peer) {
   int type = 0;
   socklen_t size = sizeof type;

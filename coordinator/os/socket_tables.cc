@@ -34,7 +34,7 @@ std::string TextOf(int family, const void* address) {
   return is_mapped ? host.substr(kMapped.size()) : host;
 }
 
-// As the kernel writes it: words of the host's byte order in hexadecimal digits.
+// An address as the kernel writes it: words of the host's byte order in hexadecimal digits.
 std::optional<InternetAddress> AddressOf(std::string_view text) {
   constexpr std::size_t kWord = 8;
   const std::size_t colon = text.find(':');

@@ -23,7 +23,7 @@ struct InternetAddress {
   bool operator==(const InternetAddress&) const = default;
 };
 
-// Of an IPv4 or IPv6 address.
+// The host and port in an IPv4 or IPv6 address.
 InternetAddress AddressIn(const sockaddr_storage& address);
 
 struct InternetSocket {
@@ -31,7 +31,7 @@ struct InternetSocket {
   bool listens = false;     // of TCP
   std::uint64_t inode = 0;  // 0: of a connection that nobody has accepted yet, or that is closed
 };
-// Of tcp, tcp6, udp or udp6; lines that are none are left out.
+// The sockets in tcp, tcp6, udp or udp6; lines that are no sockets are left out.
 std::vector<InternetSocket> InternetSocketsOf(std::string_view table);
 
 struct UnixSocket {
@@ -41,8 +41,8 @@ struct UnixSocket {
 };
 std::vector<UnixSocket> UnixSocketsOf(std::string_view table);
 
-// How many descriptors of the socket with that inode the process has; 0 also where it cannot be
-// looked into.
+// How many descriptors of the socket with that inode the process has; 0 also where the process
+// cannot be looked into.
 int DescriptorsOfSocket(pid_t pid, std::uint64_t inode);
 
 // The addresses of this computer's interfaces, as InternetAddress::host has them.

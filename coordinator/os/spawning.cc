@@ -111,8 +111,8 @@ Spawned Spawn(const SpawnRequest& request) {
   if (!request.log_stdout.empty()) {
     const int null = open("/dev/null", O_RDONLY);
     dup2(null, 0);
-    // Not what tcsim has open, nor what it was started with: which numbers a program gets for its
-    // own is part of what repeats.
+    // The program gets nothing that tcsim has open, or was started with: the numbers that a program
+    // gets for its own descriptors are part of what repeats.
     close_range(3, ~0u, CLOSE_RANGE_CLOEXEC);
   }
   if (!request.working_directory.empty() && chdir(request.working_directory.c_str()) != 0) {

@@ -13,8 +13,8 @@
 
 namespace tcs {
 
-// The errno by which the kernel refuses SpawnRequest::fixed_layout; 0 if it does not, or gives all
-// processes the same layout.
+// The errno by which the kernel refuses SpawnRequest::fixed_layout; 0 if the kernel does not
+// refuse, or gives all processes the same layout.
 int WhyNoFixedLayout();
 
 struct SpawnRequest {
@@ -23,14 +23,15 @@ struct SpawnRequest {
   std::map<std::string, std::string> environment;
   std::string log_stdout, log_stderr;     // empty: inherited
   bool fixed_layout = false;              // no address-space randomisation
-  std::vector<pid_t> guarded;             // processes that it is not to touch
+  std::vector<pid_t> guarded;             // processes that the client is not to touch
   TrappedToo trapped_too;                 // (trap.h)
   const OwnComputer* computer = nullptr;  // null: the host
 };
 
 struct Spawned {
   pid_t pid = -1;  // -1: errno is set
-  // Where its futex calls arrive, and those of all that it starts; none: nowhere, errno says why.
+  // Where the futex calls of the process arrive, and those of all that it starts; none: nowhere,
+  // errno says why.
   UniqueFd trap;
 };
 

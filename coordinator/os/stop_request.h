@@ -1,4 +1,4 @@
-// Somebody asks for the end, by signals.
+// A request for the end, by signals.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,10 @@ namespace tcs {
 
 class StopRequest {
  public:
-  // A signal came. One that follows at once belongs to the same wish: ^C reaches every process of a
-  // terminal, some of which pass it on, and who ends a group of processes sends to each of them.
-  // One that comes really later insists: nobody is to be waited for any more.
+  // A signal came. A signal that follows at once belongs to the same request: ^C reaches every
+  // process of a terminal, some of which pass it on, and a user who ends a group of processes sends
+  // a signal to each of them. A signal that comes really later insists: no process is to be waited
+  // for any more.
   void Take(int signal, std::int64_t now_real_ns) {
     if (!asked()) {
       signal_ = signal;
@@ -24,7 +25,7 @@ class StopRequest {
   bool insists() const { return insists_; }
 
  private:
-  // Whoever passes one on may have to wait for a processor.
+  // A process that passes a signal on may have to wait for a processor.
   static constexpr std::int64_t kSameWishNs = 1'000'000'000;
 
   int signal_ = 0;

@@ -7,14 +7,14 @@
 
 namespace tcs {
 
-// Those that have one of a run's levels (port/levels.h) and are bound to that CPU alone. Found by
-// asking for each thread number, some 0.1 µs each; `pid_max` is the kernel's, read before. No path
-// is looked up in /proc: while one of those threads spins, the look-up could wait for another one
-// that is in the kernel and never gets on.
+// The threads that have one of a run's levels (port/levels.h) and are bound to that CPU alone. They
+// are found by asking for each thread number, some 0.1 µs each; `pid_max` is the kernel's, read
+// before. No path is looked up in /proc: while one of those threads spins, the look-up could wait
+// for another one that is in the kernel and never gets on.
 std::vector<pid_t> RealTimeThreadsOn(int cpu, int pid_max);
 
-// After a coordinator was killed: takes real-time priority from all of them, so that none of them
-// spins there any more, and whichever holds a lock of the kernel gets to release it.
+// After a coordinator was killed: takes real-time priority from all these threads, so that no
+// thread spins there any more, and a thread that holds a lock of the kernel gets to release it.
 void LowerStraysOn(int cpu, int pid_max);
 
 // /proc/sys/kernel/pid_max.

@@ -51,7 +51,7 @@ bool AddExpirations(int timer_fd, std::int64_t count) {
               ? std::numeric_limits<std::uint64_t>::max()
               : ticks + before;
   if (ioctl(timer_fd, kSetTicks, &ticks) == 0) return true;
-  // A kernel without that (CONFIG_CHECKPOINT_RESTORE) can at least be told of one.
+  // A kernel without that (CONFIG_CHECKPOINT_RESTORE) can at least be told of one expiration.
   const itimerspec past{{0, 0}, {0, 1}};
   return timerfd_settime(timer_fd, TFD_TIMER_ABSTIME, &past, nullptr) == 0;
 }

@@ -10,16 +10,16 @@
 
 namespace tcs {
 
-// What a client's descriptor is, whatever the client says.
+// Whether the descriptor is a timer descriptor, whatever its client says.
 bool IsTimerDescriptor(int fd);
 
-// Whether it was made for one of the clocks that can be set.
+// Whether the descriptor was made for one of the clocks that can be set.
 bool IsOfRealtime(int timer_fd);
 
-// So many expirations more, to be read. False if the kernel does not take them.
+// Adds so many expirations, to be read. False if the kernel does not take them.
 bool AddExpirations(int timer_fd, std::int64_t count);
 
-// There are none to be read, and the kernel's own timer does not run.
+// From now on no expirations are to be read, and the kernel's own timer does not run.
 void ForgetExpirations(int timer_fd);
 
 }  // namespace tcs

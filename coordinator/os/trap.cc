@@ -32,15 +32,16 @@ using filter::Load;
 using filter::LoadArgument;
 using filter::Return;
 
-// Besides futex, which depends on its arguments, and those whose mark is elsewhere.
+// The trapped calls besides futex, which depends on its arguments, and those whose mark is
+// elsewhere.
 constexpr std::uint32_t kTrapped[] = {
     // Clocks and sleeps.
     SYS_clock_gettime, SYS_gettimeofday, SYS_time, SYS_nanosleep, SYS_clock_nanosleep,
-    // What sets the host's clock.
+    // Settings of the host's clock.
     SYS_clock_settime, SYS_settimeofday, SYS_adjtimex, SYS_clock_adjtime,
-    // What was charged, and since when the computer is on.
+    // The charged time, and the time since the computer is on.
     SYS_getrusage, SYS_times, SYS_sysinfo,
-    // What waits for descriptors and for children.
+    // Waits for descriptors and for children.
     SYS_read, SYS_readv, SYS_write, SYS_writev, SYS_poll, SYS_ppoll, SYS_select, SYS_pselect6,
     SYS_epoll_wait, SYS_epoll_pwait, SYS_epoll_pwait2, SYS_wait4, SYS_waitid, SYS_recvmsg,
     SYS_recvmmsg, SYS_sendmsg, SYS_sendmmsg, SYS_accept, SYS_accept4, SYS_connect, SYS_bind,
@@ -78,7 +79,7 @@ constexpr std::uint32_t kSignals[] = {SYS_kill,
                                       SYS_rt_tgsigqueueinfo,
                                       SYS_pidfd_send_signal};
 
-// The shim's own, too.
+// These calls are trapped also if the shim makes them.
 constexpr std::uint32_t kExecutions[] = {SYS_execve, SYS_execveat};
 constexpr std::uint32_t kEnd = SYS_exit_group;
 
@@ -92,8 +93,8 @@ sock_filter JumpIfEqual(std::uint32_t k, std::size_t yes, std::size_t no) {
 // host's memory in /sys, which it looks at only if the kernel knows this call.
 constexpr std::uint32_t kNuma = SYS_get_mempolicy;
 
-// With it a program reads the host's processor from its own memory, where the kernel writes it.
-// Without it the C library takes the next way, getcpu, and so do others.
+// With this call a program reads the host's processor from its own memory, where the kernel writes
+// it. Without the call the C library takes the next way, getcpu, and so do others.
 constexpr std::uint32_t kRseq = SYS_rseq;
 
 // Flags of opens that are not for reading only.
@@ -105,13 +106,13 @@ sock_filter LoadUpper(std::size_t argument) {
               sizeof(std::uint32_t));
 }
 
-// What is trapped by its number alone.
+// Calls that are trapped by their numbers alone.
 struct TrappedNumbers {
   std::vector<std::uint32_t> others;    // unless the shim made the call
-  std::vector<std::uint32_t> unmarked;  // whoever made it
+  std::vector<std::uint32_t> unmarked;  // also if the shim made the call
 };
 
-// What programs of this architecture call, after the number was loaded.
+// The filter for the calls of this architecture's programs, after the number was loaded.
 std::vector<sock_filter> NativeProgram(const TrappedNumbers& numbers) {
   const sock_filter allow = Return(SECCOMP_RET_ALLOW), trap = Return(SECCOMP_RET_USER_NOTIF);
   std::vector<std::uint32_t> trapped = numbers.others;
@@ -121,7 +122,7 @@ std::vector<sock_filter> NativeProgram(const TrappedNumbers& numbers) {
       JumpIfEqual(kNuma, 1, 0),
       JumpIfEqual(kRseq, 0, 1),
       Return(SECCOMP_RET_ERRNO | ENOSYS),
-      // Of the first thread only: others are made with it.
+      // A call of the first thread only: other threads are made with their storage.
       JumpIfEqual(SYS_arch_prctl, 0, 4),
       LoadArgument(0),
       JumpIfEqual(ARCH_SET_FS, 0, 1),
@@ -147,7 +148,7 @@ std::vector<sock_filter> NativeProgram(const TrappedNumbers& numbers) {
       JumpIfEqual(shm::kOwnCallMark, 0, 1),
       allow,
       trap,
-      // Limits of processor time only: what was charged is to be limited.
+      // Limits of processor time only: the charged time is to be limited.
       JumpIfEqual(SYS_prlimit64, 0, 2),
       LoadArgument(1),
       {BPF_JMP | BPF_JA, 0, 0, 3},
@@ -157,7 +158,7 @@ std::vector<sock_filter> NativeProgram(const TrappedNumbers& numbers) {
       JumpIfEqual(RLIMIT_CPU, 0, 1),
       trap,
       allow,
-      // Files that are opened for reading only: it may be one of the robot's computer.
+      // Files that are opened for reading only: the file may be one of the robot's computer.
       JumpIfEqual(SYS_open, 0, 2),
       LoadArgument(1),
       {BPF_JMP | BPF_JA, 0, 0, 2},
@@ -168,7 +169,7 @@ std::vector<sock_filter> NativeProgram(const TrappedNumbers& numbers) {
       JumpIfEqual(shm::kOwnCallMark, 0, 1),
       allow,
       trap,
-      // These have their mark beside the flags.
+      // These calls have their mark beside the flags.
       JumpIfEqual(SYS_recvfrom, 1, 0),
       JumpIfEqual(SYS_sendto, 0, 4),
       LoadUpper(3),
@@ -215,15 +216,15 @@ constexpr unsigned kHoldsSignals = 1u << 5;  // SECCOMP_FILTER_FLAG_WAIT_KILLABL
 }  // namespace
 
 bool TrapsHoldSignals() {
-  // Flags come before the filter, which is nowhere.
+  // The kernel looks at the flags before the filter, which is nowhere.
   return syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER,
                  SECCOMP_FILTER_FLAG_NEW_LISTENER | kHoldsSignals, nullptr) != 0 &&
          errno == EFAULT;
 }
 
 int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
-  // Without a real-time priority nothing else keeps a thread in its call when a signal comes, if
-  // the kernel can; and it may be sent one to stop.
+  // Without a real-time priority nothing but the kernel, if it can, keeps a thread in its call when
+  // a signal comes; and the thread may be sent a signal to stop it.
   const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
   TrappedNumbers numbers{{std::begin(kTrapped), std::end(kTrapped)}, {}};
   if (too.draws) numbers.others.push_back(SYS_getrandom);
@@ -250,7 +251,8 @@ int WhyNoTrap() {
   const pid_t child = fork();
   if (child == 0) {
     const int error = InstallTrap({}) >= 0 ? 0 : errno;
-    // Nobody would answer the end of the process, which is trapped; that of its one thread is not.
+    // Nobody would answer the end of the process, which is trapped. The end of its one thread is
+    // not.
     syscall(SYS_exit, error, 0, 0, 0, 0, shm::kOwnCallMark);
   }
   int status = -1;

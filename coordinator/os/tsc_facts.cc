@@ -7,14 +7,15 @@ namespace tcs {
 
 namespace {
 
-// Of a machine with many processors the rest takes the kernel a while.
+// The bytes that are read of /proc/cpuinfo: on a machine with many processors the rest takes the
+// kernel a while.
 constexpr std::size_t kFirstProcessor = 8192;
 
 bool HasFlag(std::string_view flags, std::string_view flag) {
   return flags.find(" " + std::string(flag) + " ") != std::string_view::npos;
 }
 
-// Those of the first processor, a space around each; empty: the text does not say.
+// The flags of the first processor, a space around each; empty: the text does not say.
 std::string FlagsOf(std::string_view cpuinfo) {
   constexpr std::string_view kName = "flags";
   const std::size_t line = cpuinfo.starts_with(kName) ? 0 : cpuinfo.find("\n" + std::string(kName));

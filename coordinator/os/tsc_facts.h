@@ -1,5 +1,5 @@
-// Whether the processor's time stamp counter is a clock: by it time is measured that programs
-// compute.
+// Whether the processor's time stamp counter is a clock: by the counter the time is measured that
+// programs compute.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 namespace tcs {
 
 enum class TscKind {
-  kClock,    // it keeps its rate, and never stops
-  kOfGuest,  // it keeps its rate; that it never stops a hypervisor need not say
+  kClock,    // the counter keeps its rate, and never stops
+  kOfGuest,  // the counter keeps its rate; a hypervisor need not say that it never stops
   kNoClock,
 };
 
-// By /proc/cpuinfo, or its beginning, in which the first processor is whole.
+// The kind by /proc/cpuinfo, or its beginning, in which the first processor is whole.
 TscKind KindOfTsc(std::string_view cpuinfo);
 
-// Of this host. Where it cannot be read the TSC is taken for a clock.
+// The kind of this host's TSC. Where /proc/cpuinfo cannot be read the TSC is taken for a clock.
 TscKind KindOfHostsTsc();
 
 }  // namespace tcs

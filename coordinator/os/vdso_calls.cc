@@ -43,10 +43,10 @@ constexpr Function kFunctions[] = {{"__vdso_clock_gettime", SYS_clock_gettime},
 
 bool MakeVdsoCall(pid_t pid) {
   const std::uint64_t base = ReadAuxiliaryVector(pid)[AT_SYSINFO_EHDR];
-  if (base == 0) return true;  // it has none
+  if (base == 0) return true;  // the process has no vDSO
   const UniqueFd memory(
       open(("/proc/" + std::to_string(pid) + "/mem").c_str(), O_RDWR | O_CLOEXEC));
-  // All processes have the same, each at an address of its own.
+  // All processes have the same vDSO, at an address of their own.
   static void* const ours = dlopen("linux-vdso.so.1", RTLD_LAZY | RTLD_LOCAL | RTLD_NOLOAD);
   if (memory.get() < 0 || ours == nullptr) return false;
   for (const Function& function : kFunctions) {

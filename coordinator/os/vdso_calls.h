@@ -1,6 +1,6 @@
 // A program that was begun without the shim reads the clock from the kernel's page beside it (the
-// vDSO), where no trap sees it. Its functions are made to call the kernel instead, whose calls are
-// trapped.
+// vDSO), where no trap sees it. The functions of the vDSO are made to call the kernel instead,
+// whose calls are trapped.
 #pragma once
 
 #include <sys/types.h>

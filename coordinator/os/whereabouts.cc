@@ -15,10 +15,10 @@ constexpr int kFatalSignals[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL};
 constexpr int kMostFrames = 32;
 constexpr int kOwnFrames = 2;  // the handler, and what the kernel returns by
 
-// Of its own: the thread's may be what has overflowed.
+// The handler's own stack: the thread's may be what has overflowed.
 alignas(16) char g_stack[64 * 1024];
 
-// Once: then the signal does what it does by default.
+// Runs once: then the signal does what it does by default.
 void TellAndDie(int signal) {
   constexpr char kIntroduction[] = "tcsim: for the report, where it was (as addr2line takes it):\n";
   const bool can_speak = write(STDERR_FILENO, kIntroduction, sizeof kIntroduction - 1) > 0;

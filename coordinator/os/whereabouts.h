@@ -5,9 +5,9 @@
 namespace tcs {
 
 // From now on the process writes on stderr which functions it is in before it dies of SIGABRT,
-// SIGSEGV, SIGBUS, SIGFPE or SIGILL: each as its file and the place there, as `addr2line -e FILE
-// PLACE` takes it. Changes nothing where somebody handles these already. Programs that it executes
-// do not inherit that. Call it before there are threads.
+// SIGSEGV, SIGBUS, SIGFPE or SIGILL: a function as its file and the place there, as `addr2line -e
+// FILE PLACE` takes them. Changes nothing for signals that are handled already. Programs that the
+// process executes do not inherit that. Call it before there are threads.
 void TellWhereItDies();
 
 }  // namespace tcs

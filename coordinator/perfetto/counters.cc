@@ -14,12 +14,13 @@
 namespace tcs::perfetto {
 namespace {
 
-// Of one quantity of a sensor: some megabytes of them are slow to look at, and show nothing more.
+// The most values of one quantity of a sensor: some megabytes of them are slow to look at, and show
+// nothing more.
 constexpr std::int64_t kMostValues = 20'000;
 
 using Named = std::vector<std::pair<std::string_view, std::string_view>>;
 
-// What is no number of JSON's is left out.
+// A value that is no number of JSON's is left out.
 void Add(std::string_view name, std::string_view value, Named* values) {
   if (ToReal(value)) values->emplace_back(name, value);
 }

@@ -49,7 +49,7 @@ void EventWriter::Instant(const Row& row, std::string_view name, std::int64_t at
                     Quoted(name), row.pid, row.tid, Time(at_ns)));
 }
 
-// An arrow goes from slice to slice: each end is one that takes no time.
+// An arrow goes from slice to slice: each end is a slice that takes no time.
 void EventWriter::Flow(const End& from, const End& to) {
   ++flows_;
   FlowEnd(from, flows_, "flow_out");

@@ -16,21 +16,21 @@ namespace tcs::perfetto {
 
 class EventWriter {
  public:
-  // The file has events already if `has_events`; it outlives this.
+  // The file outlives this. It has events already if `has_events`.
   EventWriter(GzipFile& file, bool has_events, int last_pid)
       : file_(file), has_events_(has_events), last_pid_(last_pid) {}
   ~EventWriter();
   EventWriter(const EventWriter&) = delete;
   EventWriter& operator=(const EventWriter&) = delete;
 
-  // A group of counters; its number.
+  // Adds a group of counters, and returns its number.
   int AddGroup(std::string_view name);
   // Values are finite numbers, as JSON has them, under their names.
   using Values = std::span<const std::pair<std::string_view, std::string_view>>;
   void Counter(int group, std::string_view name, std::int64_t at_ns, Values values);
   // Something happened at one instant.
   void Instant(const Row& row, std::string_view name, std::int64_t at_ns);
-  // Both ends of an arrow.
+  // One end of an arrow.
   struct End {
     const Row& row;
     std::string_view name;
@@ -46,7 +46,7 @@ class EventWriter {
   bool has_events_;
   int last_pid_;
   std::uint64_t flows_ = 0;
-  std::string text_;  // that is not in the file yet
+  std::string text_;  // not in the file yet
 };
 
 }  // namespace tcs::perfetto

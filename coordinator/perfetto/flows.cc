@@ -14,7 +14,7 @@ namespace tcs::perfetto {
 
 namespace {
 
-// Arrows of datagrams: as much as some seconds of a swarm.
+// The most arrows of datagrams: as many as some seconds of a swarm have.
 constexpr std::int64_t kMostDatagrams = 200'000;
 
 std::string AddFile(const std::string& path, std::string_view topic_column, std::int64_t most,

@@ -1,5 +1,5 @@
-// Arrows and instants of a trace: messages from who sent them to who received them, and how old
-// they were then; what clients wrote.
+// Arrows and instants of a trace: messages from their senders to their receivers, with their age at
+// that time, and what clients wrote.
 #pragma once
 
 #include <string>
@@ -9,11 +9,12 @@
 
 namespace tcs::perfetto {
 
-// Of messages.csv (DDS) and datagrams.csv, as far as they are there. Empty on success, else one
-// sentence. Of very many datagrams the first.
+// Adds the messages of messages.csv (DDS) and datagrams.csv, as far as these are there. Empty on
+// success, else one sentence. Of very many datagrams only the first are added.
 [[nodiscard]] std::string AddMessages(const std::string& folder, const Schedule& schedule,
                                       EventWriter* events);
-// Of output.csv and the clients' logs. Of very long logs their beginnings.
+// Adds the lines of output.csv and the clients' logs. Of very long logs only the beginnings are
+// added.
 void AddOutput(const std::string& folder, const Schedule& schedule, EventWriter* events);
 
 }  // namespace tcs::perfetto

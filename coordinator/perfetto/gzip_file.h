@@ -1,4 +1,4 @@
-// A file that is compressed as it is written; the same bytes each time.
+// A file that is compressed as it is written. The same text gives the same bytes each time.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace tcs::perfetto {
 class GzipFile {
  public:
   GzipFile() = default;
-  // Closes without a word if nobody has.
+  // Closes the file without a word if Close was not called.
   ~GzipFile();
   GzipFile(const GzipFile&) = delete;
   GzipFile& operator=(const GzipFile&) = delete;
@@ -19,7 +19,7 @@ class GzipFile {
   // Empty on success, else one sentence.
   [[nodiscard]] std::string Open(const std::string& path);
   void Append(std::string_view text);
-  // The same; of whatever went wrong since Open.
+  // Empty if nothing has gone wrong since Open, else one sentence.
   [[nodiscard]] std::string Close();
 
  private:

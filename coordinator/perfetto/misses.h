@@ -8,8 +8,9 @@
 
 namespace tcs::perfetto {
 
-// An instant on the row of the thread when it should have been done, with the sentence that
-// `tcsim explain` says. Without responses.csv or a summary there are none.
+// Adds an instant for each miss, on the row of the thread at the time when it should have been
+// done, with the sentence that `tcsim explain` says. Without responses.csv or a summary there are
+// none.
 void AddMisses(const std::string& folder, const Schedule& schedule, EventWriter* events);
 
 }  // namespace tcs::perfetto

@@ -1,6 +1,6 @@
-// A run's folder as one trace for ui.perfetto.dev: who ran when (trace.json), with counters of
-// where bodies were and what was commanded, arrows from sends to receives, and what programs
-// printed.
+// A run's folder as one trace for ui.perfetto.dev: which thread ran when (trace.json), with
+// counters of where bodies were and what was commanded, arrows from sends to receives, and what
+// programs printed.
 #pragma once
 
 #include <string>

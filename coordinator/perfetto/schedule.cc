@@ -106,7 +106,7 @@ const Row* Schedule::At(const std::string& client, std::int64_t at_ns, Edge edge
     if (!row->first.starts_with(client)) break;
     if (row->first != client && !row->first.starts_with(further)) continue;
     const auto& slices = row->second.busy;
-    // The first that goes on until then or longer; a few may touch it.
+    // The first slice that goes on until then or longer; a few slices may touch that time.
     auto slice =
         std::ranges::lower_bound(slices, at_ns, {}, &std::pair<std::int64_t, std::int64_t>::second);
     for (; slice != slices.end() && slice->first <= at_ns; ++slice) {

@@ -13,7 +13,7 @@
 
 namespace tcs::perfetto {
 
-// Of a trace: a thread of a process, as its format has them.
+// A row of a trace: a thread of a process, as the trace's format has them.
 struct Row {
   int pid = 0, tid = 0;
   std::vector<std::pair<std::int64_t, std::int64_t>> busy;  // from, until; ns, in order
@@ -21,17 +21,17 @@ struct Row {
 
 class Schedule {
  public:
-  // What is wrong is one sentence.
+  // The error is one sentence.
   [[nodiscard]] static LoadResult<Schedule> Read(const std::string& path);
 
-  // Without the file's beginning and end; between two of them a comma.
+  // The events without the file's beginning and end; between two of them a comma.
   std::string_view events() const { return events_; }
   int last_pid() const { return last_pid_; }
 
-  // None: null. The first thread of a client is called as the client.
+  // Null if there is no such row. The first thread of a client has the client's name.
   const Row* Find(const std::string& name) const;
-  // Of the rows of the client's threads the one that stopped at that time, or began, or was busy;
-  // else that of the first. None: null.
+  // The row of the client's thread that stopped at that time, or began, or was busy; else the row
+  // of the client's first thread. Null if there is none.
   const Row* ThatStopped(const std::string& client, std::int64_t at_ns) const;
   const Row* ThatBegan(const std::string& client, std::int64_t at_ns) const;
 

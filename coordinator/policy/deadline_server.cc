@@ -33,7 +33,8 @@ void DeadlineServer::WakeUp(std::int64_t now_ns) {
   if (now_ns < throttled_until_ns_) return;
   const bool is_constrained = parameters_.deadline_ns < parameters_.period_ns;
   if (is_constrained && now_ns < deadline_ns_) {
-    // Its next deadline must not come before its next period: it gets as much as is its due.
+    // The thread's next deadline must not come before its next period: the thread gets as much
+    // budget as is its due.
     if (!Overflows(now_ns)) return;
     budget_ns_ = static_cast<std::int64_t>(static_cast<Wide>(parameters_.runtime_ns) *
                                            (deadline_ns_ - now_ns) / parameters_.deadline_ns);

@@ -2,9 +2,9 @@
 // server, by the rules of Linux's SCHED_DEADLINE (Documentation/scheduler/sched-deadline.rst).
 //
 // A thread that wakes keeps its deadline if what is left of its budget fits into what is left of
-// the time, else it begins anew: its deadline is `deadline_ns` later, its budget whole. One that
-// has used up its budget is throttled until its next period. A thread whose runtime has no end has
-// no budget either: every release begins anew.
+// the time, else it begins anew: its deadline is `deadline_ns` later, its budget whole. A thread
+// that has used up its budget is throttled until its next period. A thread whose runtime has no end
+// has no budget either: every release begins anew.
 //
 // Pure; virtual nanoseconds.
 #pragma once
@@ -20,11 +20,11 @@ class DeadlineServer {
   // Begins anew, with other parameters.
   void Start(const DeadlineParameters& parameters, std::int64_t now_ns);
   void WakeUp(std::int64_t now_ns);
-  // What its deadline would be then.
+  // The deadline that the thread would have if it woke at `now_ns`.
   std::int64_t DeadlineIfWoken(std::int64_t now_ns) const;
-  // It has come to `now_ns` after running for `ns`.
+  // The thread has come to `now_ns` after running for `ns`.
   void Spend(std::int64_t ns, std::int64_t now_ns);
-  // It wants no more of this period (sched_yield).
+  // The thread wants no more of this period (sched_yield).
   void GiveUp(std::int64_t now_ns);
 
   const DeadlineParameters& parameters() const { return parameters_; }

@@ -52,7 +52,8 @@ HostDuration Pacer::ToWait(VirtualTime next, HostTime real) {
     asked_real_ = real;
     StartFrom(real);
   }
-  // What would be due later than where it stands waits for the wall clock, too, before it stands.
+  // A run whose next act is later than `limit_` also waits for the wall clock to reach `limit_`
+  // before it stands.
   const VirtualTime until = std::min(next, std::max(limit_, VirtualTime()));
   const auto ahead_ns = static_cast<double>((until - origin_).ns());
   HostTime due = real;

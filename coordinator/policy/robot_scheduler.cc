@@ -15,7 +15,7 @@ constexpr std::int64_t kLatestDeadlineNs = INT64_MAX / 2;
 constexpr int kMostOwners = 64;  // in a chain of who is blocked on whom; a circle ends there
 constexpr VirtualDuration kQuantum = VirtualDuration::Milliseconds(1),
                           kRoundRobinQuantum = VirtualDuration::Milliseconds(100);
-// How far a core may run past what others could send to a more urgent thread on it.
+// How far a core may run past input that others could send to a more urgent thread on it.
 constexpr VirtualDuration kGrain = VirtualDuration::Microseconds(100);
 
 // Of processor time, in millionths.
@@ -98,7 +98,7 @@ RobotScheduler::Priority RobotScheduler::PriorityIfWoken(const Entity& entity,
   return std::max(entity.inherited, OfDeadline(entity.server.DeadlineIfWoken(now.ns())));
 }
 
-// None: its turn has no end.
+// None: the thread's turn has no end.
 std::optional<VirtualDuration> RobotScheduler::QuantumOf(const Entity& entity) {
   if (entity.parameters.policy == SCHED_FIFO || HasDeadline(entity)) return std::nullopt;
   return entity.parameters.policy == SCHED_RR ? kRoundRobinQuantum : kQuantum;
@@ -218,7 +218,8 @@ void RobotScheduler::Ask(std::size_t place) {
   Entity& entity = entities_[place];
   Glance& glance = glances_[place];
   Wait& wait = entity.wait = wait_of_(entity.thread);
-  // One for a time that has passed already ends as it begins, and not when another core gets there.
+  // A wait for a time that has passed already ends as it begins, and not when another core gets
+  // there.
   wait.until = std::max(wait.until, wait.from);
   const VirtualTime before = glance.due;
   glance.due = wait.waits ? std::min(wait.until, wait.next_expiry) : wait.next_expiry;
@@ -303,8 +304,8 @@ void RobotScheduler::Dispatch(std::size_t core, Thread thread) {
   cores_[core].charged_to = progress_[core];
 }
 
-// What the core's thread has run since it was charged last. Where that is all that it has, its next
-// deadline is its next period's, and it runs no earlier.
+// Charges the time that the core's thread has run since it was charged last. Where that uses up the
+// thread's budget, its next deadline is its next period's, and the thread runs no earlier.
 void RobotScheduler::ChargeBudget(Core& core, VirtualTime now) {
   const VirtualDuration ran = now - std::exchange(core.charged_to, now);
   Entity* entity = Find(core.running);
@@ -330,7 +331,7 @@ void RobotScheduler::WakeUp(Thread thread, VirtualTime now, bool is_release) {
   FindEffectivePriority(thread);
 }
 
-// Under SCHED_DEADLINE it has done what it had to do in this period.
+// Under SCHED_DEADLINE a thread that yields has done what it had to do in this period.
 void RobotScheduler::Yield(Thread thread) {
   Entity* entity = Find(thread);
   if (entity == nullptr || entity->parameters.policy != SCHED_DEADLINE) {
@@ -349,7 +350,7 @@ void RobotScheduler::Stop(std::size_t core, VirtualDuration advanced, VirtualDur
   ShareOut(its, advanced);
   ChargeBudget(its, progress_[core]);
   Entity* ran = Find(std::exchange(its.running, kNobody));
-  if (ran == nullptr) return;  // it has ended
+  if (ran == nullptr) return;  // the thread has ended
   ran->turn += used;
   its.turn_over = HasUsedTurnUp(*ran) ? ran->thread : kNobody;
 }
@@ -386,8 +387,8 @@ bool RobotScheduler::PreemptsOnWakeup(Thread thread, VirtualDuration after) cons
   return PreemptsOnWakeup(At(thread), after);
 }
 
-// Whether the core has to stop at `due` for a thread that goes first then: of the cores that
-// would, the one that comes there last. The others need not.
+// Whether the core has to stop at `due` for a thread that goes first then: of the cores that could
+// make room, only the core that comes to `due` last has to.
 bool RobotScheduler::MakesRoom(std::size_t core, const Entity& woken, VirtualTime due) const {
   const auto may_take = [&](std::size_t which) {
     return Allows(woken.allowed, which) && queue_.YieldsTo(which, PriorityAt(woken));
@@ -413,7 +414,7 @@ VirtualDuration RobotScheduler::LatenessOf(Thread woken, VirtualTime sent, Virtu
     start = std::min(start, its);
   }
   if (best == cores_.size()) return {};
-  // One that goes first only since its equals have run on had its turn to wait for.
+  // A thread that goes first only since its equals have run on had its turn to wait for.
   const VirtualDuration late = start - sent;
   const bool counts = queue_.YieldsTo(best, priority, false) || PreemptsOnWakeup(entity, -late);
   return counts ? late : VirtualDuration();
@@ -424,9 +425,9 @@ VirtualTime RobotScheduler::TurnEnd(std::size_t core, const Entity& running) con
   return progress_[core] + std::max(VirtualDuration(), running.turn_length - running.turn);
 }
 
-// How far a core may run if what others do at `input` could interrupt it. A program acts some
-// time after it is woken, so the core goes on until then: each would stop the other otherwise. With
-// set costs it does not, and at one and the same instant it gives way.
+// How far a core may run if an act of another core at `input` could interrupt it. A program acts
+// some time after it is woken, so the core goes on until then: each core would stop the other
+// otherwise. With set costs the core does not go on, and at one and the same instant it gives way.
 VirtualTime RobotScheduler::PastInput(std::size_t core, VirtualTime input,
                                       const Outlook& outlook) const {
   const VirtualTime now = progress_[core];
@@ -436,9 +437,9 @@ VirtualTime RobotScheduler::PastInput(std::size_t core, VirtualTime input,
   return outlook.has_given_way ? now + kGrain : now;
 }
 
-// Because input may have `other` run instead at once: being more urgent, or as an equal that goes
-// first. What programs of other robots and the world do can be input; on a robot of several cores
-// also what happens on the others.
+// The horizon that comes from input that may have `other` run instead at once: being more urgent,
+// or as an equal that goes first. Acts of other robots' programs and of the world can be input; on
+// a robot of several cores also acts on the other cores.
 VirtualTime RobotScheduler::HorizonForInput(std::size_t core, const Entity& running,
                                             const Entity& other, const Wait& wait,
                                             const Outlook& outlook) const {
@@ -464,7 +465,7 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
                                                   const Outlook& outlook) const {
   const Entity* found = Find(thread);
   if (found == nullptr)
-    return {.run = furthest, .idle = {}};  // it has ended since it was dispatched
+    return {.run = furthest, .idle = {}};  // the thread has ended since it was dispatched
   const Entity& running = *found;
   const Priority own = PriorityAt(running);
   const std::uint32_t process = running.wait.process;
@@ -472,7 +473,7 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
   const bool takes_turns = QuantumOf(running).has_value();
   const VirtualTime turn_end = TurnEnd(core, running);
   const bool yields = queue_.YieldsTo(core, own);
-  // What it does to memory others see as it is when they come there themselves.
+  // Threads on other cores see memory as this thread has left it when they come there themselves.
   if (cores_.size() > 1 && furthest > now) {
     furthest = now + lengths_.OfStep(core, now, furthest - now);
   }
@@ -482,7 +483,7 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
   }
   const VirtualTime input = std::min(std::max(outlook.input, now), outlook.output);
   for (std::size_t place = 0; place < entities_.size(); ++place) {
-    // Nothing that ends its wait comes before what limits the thread already.
+    // Nothing that ends this wait comes before the limits that the running thread has already.
     const Glance& glance = glances_[place];
     const VirtualTime end = glance.for_others ? std::min(glance.due, input) : glance.due;
     if (glance.waits && end >= limit && end >= idle) continue;
@@ -491,7 +492,8 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
     const auto precedes_at = [&](VirtualTime time) {
       return PriorityIfWoken(other, std::max(time, now)) > own;
     };
-    // A timer that releases it does so in time, also where it is not its turn yet.
+    // A timer that releases the other thread does so in time, also where it is not that thread's
+    // turn yet.
     if (wait.process == process || HasDeadline(other) || precedes_at(wait.next_expiry)) {
       limit = std::min(limit, wait.next_expiry);
     }
@@ -508,7 +510,7 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
         const VirtualTime until = due + lengths_.SlackOf(other.thread, due);
         if (MakesRoom(core, other, due)) limit = std::min(limit, std::max(until, now));
       } else {
-        limit = std::min(limit, std::max(due, turn_end));  // it has the next turn
+        limit = std::min(limit, std::max(due, turn_end));  // `other` has the next turn
       }
     }
     if (wait.for_input) {
@@ -524,7 +526,7 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
 
 VirtualTime RobotScheduler::HorizonWhileWorldStands(std::size_t core, Thread thread) const {
   const Entity* found = Find(thread);
-  if (found == nullptr) return kNever;  // it has ended since it was dispatched
+  if (found == nullptr) return kNever;  // the thread has ended since it was dispatched
   const Entity& running = *found;
   const Priority own = PriorityAt(running);
   const std::uint32_t process = wait_of_(thread).process;

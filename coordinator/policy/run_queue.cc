@@ -83,7 +83,7 @@ void RunQueue::Choose(std::size_t core, VirtualTime progress, bool keep_places) 
     if (keep_places && StaysElsewhere(ready.thread, core)) continue;
     const VirtualTime start = std::max(progress, ready.from);
     if (start < turn.start) turn = Turn{ready.thread, start};
-    if (start == progress) return;  // nobody can start earlier
+    if (start == progress) return;  // no thread can start earlier
   }
 }
 
@@ -102,10 +102,10 @@ void RunQueue::Assign(const std::vector<VirtualTime>& progress) {
   Displace(progress);
 }
 
-// One that stays where it was may have lost that core to somebody more urgent who runs nowhere
-// else, while somebody less urgent was given another one.
+// A thread that stays where it was may have lost that core to a more urgent thread that runs
+// nowhere else, while a less urgent thread was given another core.
 void RunQueue::Displace(const std::vector<VirtualTime>& progress) {
-  // The most urgent first: whoever is displaced comes later, and may displace others.
+  // The most urgent thread first: a thread that is displaced comes later, and may displace others.
   for (const Ready& ready : ready_) {
     if (HasTurn(ready.thread)) continue;
     std::optional<std::size_t> least;
@@ -148,7 +148,7 @@ VirtualTime RunQueue::NextToPrecede(std::size_t core) const {
   const auto own = Find(turns_[core].thread);
   if (own == ready_.end()) return next;
   for (const Ready& ready : ready_) {
-    if (!Precedes(ready, *own)) break;  // nor does anybody behind it
+    if (!Precedes(ready, *own)) break;  // nor does any thread behind it
     if (HasTurn(ready.thread)) continue;
     if ((ready.allowed >> (core & 63) & 1) != 0) next = std::min(next, ready.from);
   }

@@ -1,4 +1,4 @@
-// What a thread has asked its robot's scheduler for, in POSIX's and Linux's terms.
+// The parameters that a thread has asked its robot's scheduler for, in POSIX's and Linux's terms.
 #pragma once
 
 #include <sched.h>
@@ -11,7 +11,8 @@
 
 namespace tcs {
 
-// Of SCHED_DEADLINE: so much processor time in each period, by so long after its beginning.
+// Of SCHED_DEADLINE: `runtime_ns` of processor time in each period, by `deadline_ns` after the
+// period's beginning.
 struct DeadlineParameters {
   std::int64_t runtime_ns = 0;  // 0: without end, and no period is kept
   std::int64_t deadline_ns = 0;
@@ -21,10 +22,10 @@ struct DeadlineParameters {
 struct SchedulingParameters {
   int policy = SCHED_OTHER;
   int priority = 0;             // of SCHED_FIFO and SCHED_RR: 1 to 99
-  bool resets_on_fork = false;  // SCHED_RESET_ON_FORK: what it creates is an ordinary thread
+  bool resets_on_fork = false;  // SCHED_RESET_ON_FORK: the thread's new threads are ordinary
   DeadlineParameters deadline{};
 
-  // As sched_getscheduler says it.
+  // The policy and the flag, as sched_getscheduler returns them.
   int PolicyAndFlag() const { return policy | (resets_on_fork ? SCHED_RESET_ON_FORK : 0); }
 };
 

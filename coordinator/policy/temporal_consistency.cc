@@ -20,7 +20,7 @@ TemporalConsistency::Rank TemporalConsistency::RankOf(Leaf leaf) const {
   return {At(leaf).next, HasGivenWay(leaf), leaf != acted_last_, leaf};
 }
 
-// One of its times, or who acted last, has changed.
+// One of the leaf's times, or the leaf that acted last, has changed.
 void TemporalConsistency::Reorder(Leaf leaf) {
   Times& times = leaves_[static_cast<std::size_t>(leaf)];
   const Rank rank = RankOf(leaf);
@@ -103,7 +103,7 @@ VirtualTime TemporalConsistency::LeastOther(Leaf leaf) const {
   return other == order_.end() ? VirtualTime::Never() : std::get<0>(*other);
 }
 
-// Of the quiet ones.
+// Of the quiet leaves.
 VirtualTime TemporalConsistency::LeastRun(Leaf but) const {
   VirtualTime least = VirtualTime::Never();
   for (const Leaf leaf : quiet_) {

@@ -24,7 +24,8 @@ struct Data {
 };
 static_assert(offsetof(Data, written) == 8 && offsetof(Data, parameters) == 16);
 
-// It uses no stack, for that is unmapped, too. rdi: the first page; esi: the policy, or negative.
+// The code uses no stack, for the stack is unmapped, too. rdi: the first page; esi: the policy, or
+// negative.
 asm(R"(
   .pushsection .rodata
 tcs_bare_relay_begin:
@@ -71,7 +72,8 @@ tcs_bare_relay_end:
 )");
 extern "C" const char tcs_bare_relay_begin[], tcs_bare_relay_end[];
 
-// The C library has told the kernel of memory into which it is to write where the thread runs.
+// The C library has told the kernel of memory into which the kernel is to write where the thread
+// runs.
 bool TakeBackRseq() {
   if (__rseq_size == 0) return true;
   char* area = static_cast<char*>(__builtin_thread_pointer()) + __rseq_offset;

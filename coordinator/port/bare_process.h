@@ -1,9 +1,10 @@
 // The block detector's loop, in a process that has no memory but two pages of its own.
 //
-// What runs only when nobody else wants the processor gets it about as rarely to die. To unmap a
-// library it takes the kernel's lock of that file, for which whoever starts or ends a program waits
-// meanwhile: with the C library that is everybody on the machine. So the process gives up what it
-// shares with others before it sinks to that level.
+// A process that runs only when nobody else wants the processor gets it about as rarely to die. To
+// unmap a library the process takes the kernel's lock of that file. Every process that starts or
+// ends a program with the library waits for the lock meanwhile: with the C library that is every
+// process on the machine. So the process gives up what it shares with others before it sinks to
+// that level.
 #pragma once
 
 namespace tcs {

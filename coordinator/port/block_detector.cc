@@ -18,8 +18,8 @@ namespace tcs {
 
 namespace {
 
-// A process of its own and not a thread: a killed coordinator must not have to wait for somebody
-// who may never get the processor again before its end is known.
+// A process of its own and not a thread: a killed coordinator must not have to wait for a thread
+// that may never get the processor again before the coordinator's end is known.
 [[noreturn]] void Detect(int arm, int fired) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const bool only_when_idle = !SetLevel(0, Level::kDetector);
@@ -41,7 +41,7 @@ namespace {
 
 BlockDetector::~BlockDetector() {
   if (!pidfd_) return;
-  // By this and not by its number, which may be another's by now.
+  // By the pidfd and not by the process's number, which may be another's by now.
   KillByPidfd(pidfd_.get());
   siginfo_t info;
   waitid(P_PIDFD, static_cast<id_t>(pidfd_.get()), &info, WEXITED);

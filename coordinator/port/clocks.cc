@@ -24,13 +24,14 @@ std::int64_t HostClockNs(clockid_t id) {
 
 namespace {
 
-// One instant by both clocks.
+// An instant by both clocks.
 struct TscReading {
   std::uint64_t tsc;
   std::int64_t raw_ns;
 };
 
-// The tightest of some: where the host was away between the two, they are of no one instant.
+// The tightest of some readings: where the host was away between the two clocks, their values are
+// of no one instant.
 TscReading ReadTsc() {
   TscReading best{};
   std::uint64_t least_ticks = UINT64_MAX;
@@ -67,7 +68,7 @@ std::int64_t ProcessCpuClockNs(pid_t pid) {
   return clock_gettime(shm::CpuClockOf(pid), &t) == 0 ? shm::ToNs(t) : -1;
 }
 
-// A thread's own clock can be read by its own process only; this is the same number.
+// A thread's own clock can be read by its own process only; schedstat has the same number.
 int OpenThreadCpuClock(pid_t tid) {
   char path[64];
   snprintf(path, sizeof path, "/proc/%d/schedstat", tid);

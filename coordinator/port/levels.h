@@ -1,4 +1,4 @@
-// Who goes before whom on the one processor that all of a run share (paper, section 3): the
+// The order on the one processor that all processes of a run share (paper, section 3): the
 // coordinator preempts everybody, the active thread preempts the detector, and the detector runs
 // exactly when the active thread has blocked in the kernel.
 #pragma once
@@ -7,7 +7,8 @@
 
 namespace tcs {
 
-// Who is to do only what the kernel has to do for it does that at once, above the coordinator.
+// A thread that is to do only what the kernel has to do for it does that at once, above the
+// coordinator (kKernelOnly).
 enum class Level : int {
   kWaiting = 10,
   kDetector = 11,
@@ -16,24 +17,26 @@ enum class Level : int {
   kKernelOnly = 14
 };
 
-// The thread, 0 for the calling one, runs on that CPU only. While it runs on another one the caller
-// sleeps until it has stopped. False if the kernel does not let it.
+// The thread, 0 for the calling one, runs on that CPU only. While the thread runs on another CPU
+// the caller sleeps until the thread has stopped. False if the kernel does not let it.
 bool BindTo(pid_t tid, int cpu);
-// To that CPU alone.
+// Whether the thread is bound to that CPU alone.
 bool IsBoundTo(pid_t tid, int cpu);
 
-// False where it is not permitted (real_time_facts.h).
+// False where levels are not permitted (real_time_facts.h).
 bool SetLevel(pid_t tid, Level level);
 
-// From now on SetLevel does nothing in this process and its forks, as where it is not permitted.
+// From now on SetLevel does nothing in this process and its forks, as where levels are not
+// permitted.
 void UseNoLevels();
 
-// The thread, 0 for the calling one, runs only when hardly anybody else on its CPU wants to.
-// Everybody may do that.
+// The thread, 0 for the calling one, runs only when hardly any other thread on its CPU wants to.
+// Every user may do that.
 void RunOnlyWhenIdle(pid_t tid = 0);
 
-// Of the calling thread, at ordinary priority: its timers are not put off, and it preempts those
-// that compute when it wakes, as far as the kernel lets it. Everybody may do that.
+// For the calling thread, at ordinary priority: the thread's timers are not put off, and it
+// preempts threads that compute when it wakes, as far as the kernel lets it. Every user may do
+// that.
 void BeWokenInTime();
 
 // Back to ordinary scheduling.

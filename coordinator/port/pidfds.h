@@ -6,7 +6,7 @@
 namespace tcs {
 
 int OpenPidfd(pid_t pid);
-// By SIGKILL. What is left of the process then is the kernel's to do.
+// By SIGKILL. The kernel does what is then left to do of the process's end.
 void KillByPidfd(int pidfd);
 // A copy of another process's descriptor: pidfd_getfd. -1: errno is set.
 int DuplicateFd(int pidfd, int fd);

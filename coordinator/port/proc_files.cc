@@ -104,7 +104,7 @@ std::optional<int> EndOf(pid_t pid) {
 
 namespace {
 
-// Of /proc/TID/status: null without it, else `text`.
+// Reads /proc/TID/status: null without it, else `text`.
 const char* ReadStatus(pid_t tid, char (&text)[4096]) {
   char path[64];
   snprintf(path, sizeof path, "/proc/%d/status", tid);
@@ -190,7 +190,7 @@ std::string ProgramOf(pid_t pid) {
 std::vector<pid_t> ThreadsOf(pid_t pid) {
   std::vector<pid_t> tids;
   std::error_code gone;
-  // Not a range-for: its steps throw, where the process ends meanwhile.
+  // Not a range-for: the steps of a range-for throw where the process ends meanwhile.
   std::filesystem::directory_iterator entry("/proc/" + std::to_string(pid) + "/task", gone);
   for (; !gone && entry != std::filesystem::directory_iterator{}; entry.increment(gone)) {
     tids.push_back(std::stoi(entry->path().filename()));

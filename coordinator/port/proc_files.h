@@ -1,5 +1,5 @@
-// What the kernel tells of threads and processes in /proc, of those of a run as of any other. What
-// is said of a thread that runs meanwhile may be over when it is read.
+// Facts that the kernel tells of threads and processes in /proc, of those of a run as of any other.
+// A fact about a thread that runs meanwhile may be over when it is read.
 #pragma once
 
 #include <sys/types.h>
@@ -11,7 +11,8 @@
 
 namespace tcs {
 
-// What a process has computed, by the kernel's own books: in its programs and in system calls.
+// The time that a process has computed, by the kernel's own books: in its programs and in system
+// calls.
 struct ComputedTimes {
   std::int64_t user_ns = 0, system_ns = 0;
 };
@@ -20,10 +21,10 @@ ComputedTimes ComputedBy(pid_t pid);
 // The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
 char ThreadState(pid_t tid);
 
-// The kernel has chosen the thread for a signal, which it handles when it runs next. Of a thread
-// that waits at its gate or for the answer to a trapped call: it does not sleep any more, or no
-// longer so that a signal wakes it (os/trap.h). Nothing else tells who gets a signal that is for
-// the whole process. False also of a thread that is stopped or has ended.
+// The kernel has chosen the thread for a signal, which it handles when it runs next. For a thread
+// that waits at its gate or for the answer to a trapped call: the thread does not sleep any more,
+// or no longer so that a signal wakes it (os/trap.h). Nothing else tells which thread gets a signal
+// that is for the whole process. False also of a thread that is stopped or has ended.
 bool IsMarkedForSignal(pid_t tid);
 
 // True if the thread, which does not run, was preempted in its program and not in the kernel. False
@@ -38,9 +39,10 @@ bool IsExiting(pid_t tid);
 // The thread is on its way out: it was killed, or ends with its process.
 bool IsDying(pid_t tid);
 
-// How a child of this process has ended, as of waitpid, which still finds it; none if it lives.
+// How a child of this process has ended, as of waitpid, which still finds the child; none if the
+// child lives.
 std::optional<int> WaitStatusOf(pid_t child);
-// The same of any process that nobody has reaped, as far as this one may know it.
+// The same of any process that nobody has reaped, as far as this process may know it.
 std::optional<int> EndOf(pid_t pid);
 
 // The signals that a thread's process catches and ignores, that the thread blocks, and that wait
@@ -50,7 +52,7 @@ struct SignalSets {
 };
 SignalSets ReadSignalSets(pid_t tid);
 
-// As whom a thread acts, and which capabilities are in effect; bit 0 is capability 0.
+// The user as whom a thread acts, and the capabilities that are in effect; bit 0 is capability 0.
 struct Credentials {
   uid_t real_uid = 0, effective_uid = 0;
   std::uint64_t capabilities = 0;
@@ -60,27 +62,27 @@ struct Credentials {
 Credentials ReadCredentials(pid_t tid);
 
 // A resource limit that is in force for a thread, by the name that /proc/TID/limits gives it; 0 if
-// the thread has ended. Everybody may read it, where prlimit wants CAP_SYS_RESOURCE for the limits
-// of one who has become somebody else.
+// the thread has ended. Every process may read it, where prlimit wants CAP_SYS_RESOURCE for the
+// limits of a process that has changed users.
 std::uint64_t ReadSoftLimit(pid_t tid, const char* name);
 
 // The number of the system call that a thread is in, as text; "unknown" if it is in none.
 std::string ThreadSystemCall(pid_t tid);
 
-// Of the ioctl that a thread stands in; nothing: it is in none.
+// The descriptor of the ioctl that a thread is in; none: the thread is in no ioctl.
 std::optional<int> DescriptorOfIoctl(pid_t tid);
 
 // The file that a process executes; "pid N" if that cannot be had.
 std::string ProgramOf(pid_t pid);
 
 std::vector<pid_t> ThreadsOf(pid_t pid);
-// -1 if it has ended.
+// -1 if the thread has ended.
 pid_t ProcessOfThread(pid_t tid);
-// 0 if nobody traces it.
+// 0 if nobody traces the process.
 pid_t TracerOf(pid_t pid);
 bool IsThreadOf(pid_t pid, pid_t tid);
 
-// Whether it is a child of that one, or a child of its children, and so on.
+// Whether the process is a child of `ancestor`, or a child of its children, and so on.
 bool DescendsFrom(pid_t pid, pid_t ancestor);
 
 std::vector<pid_t> ChildrenOf(pid_t pid);

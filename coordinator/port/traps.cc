@@ -104,7 +104,7 @@ bool WriteMemory(pid_t pid, std::uint64_t address, const void* from, std::size_t
   return process_vm_writev(pid, &local, 1, &remote, 1, 0) == static_cast<ssize_t>(size);
 }
 
-// Whoever may not look is told so before the memory is looked for.
+// The kernel refuses a process without the right to look before it looks for the memory.
 int WhyNoLooksInto(pid_t pid) {
   static const char there = 1;
   char found;

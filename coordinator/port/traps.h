@@ -22,7 +22,7 @@ struct TrappedCall {
   std::uint64_t args[6] = {};
 
   // True of a call that the kernel makes again as it was: something has ended the wait for its
-  // answer, and no handler has run that would have had it fail.
+  // answer, and no handler has run that would have made the call fail.
   bool IsAgain(const TrappedCall& before) const {
     return listener == before.listener && tid == before.tid && number == before.number &&
            std::equal(std::begin(args), std::end(args), std::begin(before.args));
@@ -35,24 +35,24 @@ std::optional<TrappedCall> ReceiveTrapped(int listener);
 // Ends the call with `result`, negative for an errno. False if the thread no longer waits there: a
 // signal has ended the call.
 bool AnswerTrapped(int listener, std::uint64_t id, std::int64_t result);
-// Ends it with a descriptor of the file, which the caller has from then on; `on_exec`: also when it
-// executes another program.
+// Ends the call with a descriptor of the file, which the caller has from then on; `on_exec`: also
+// when the caller executes another program.
 bool AnswerTrappedByFile(int listener, std::uint64_t id, int file, bool on_exec);
-// The same without ending it. The number, or -1: errno is set.
+// The same without ending the call. The number, or -1: errno is set.
 int PutFileInto(int listener, std::uint64_t id, int file, bool on_exec);
-// Lets the kernel carry it out.
+// Lets the kernel carry the call out.
 bool ContinueTrapped(int listener, std::uint64_t id);
 
-// While the call waits its process gets a copy of that descriptor of ours, under that number, which
-// names another one of its until then, and closed at an exec.
+// While the call waits its process gets a copy of the descriptor `ours`, under `number`, which
+// names another of its descriptors until then. The copy is closed at an exec.
 bool GiveDescriptor(const TrappedCall& call, int ours, int number);
 
-// Results by which the kernel ends a call as it ends one of its own that a signal interrupts. It
-// knows them only in a thread that it has marked for a signal (IsMarkedForSignal, host.h); in any
-// other they would reach the program.
+// Results by which the kernel ends a call as it ends one of its own that a signal interrupts. The
+// kernel knows these results only in a thread that it has marked for a signal (IsMarkedForSignal,
+// proc_files.h); in any other thread they would reach the program.
 namespace by_signal {
 inline constexpr int kAsFlagsSay = 512;      // with EINTR, or again if SA_RESTART (ERESTARTSYS)
-inline constexpr int kAgain = 513;           // it makes the call again (ERESTARTNOINTR)
+inline constexpr int kAgain = 513;           // the kernel makes the call again (ERESTARTNOINTR)
 inline constexpr int kAgainUnlessRun = 514;  // with EINTR once a handler has run (ERESTARTNOHAND)
 }  // namespace by_signal
 
@@ -60,10 +60,10 @@ constexpr bool EndsBySignal(std::int64_t result) {
   return result <= -by_signal::kAsFlagsSay && result >= -by_signal::kAgainUnlessRun;
 }
 
-// True if its thread has not taken the answer yet, because it has not run since.
+// True if the call's thread has not taken the answer yet, because the thread has not run since.
 bool HasAnswerToTake(int listener, std::uint64_t id);
 
-// Copies from another process's memory. False if it is not there.
+// Copies from another process's memory. False if that memory is not there.
 bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size);
 // The same from two places, which costs hardly more than from one.
 struct RemotePiece {
@@ -77,8 +77,8 @@ bool WriteMemory(pid_t pid, std::uint64_t address, const void* from, std::size_t
 bool ReadMemory(pid_t pid, const std::vector<iovec>& from, void* to, std::size_t size);
 bool WriteMemory(pid_t pid, const std::vector<iovec>& to, const void* from, std::size_t size);
 
-// The errno by which the kernel keeps this process from what is in the memory of a child of its; 0
-// if it does not.
+// The errno by which the kernel keeps this process from what is in the memory of a child of this
+// process; 0 if the kernel does not.
 int WhyNoLooksInto(pid_t pid);
 
 }  // namespace tcs

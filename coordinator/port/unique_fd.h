@@ -1,4 +1,5 @@
-// A descriptor that its owner closes: when it ends, or is given another one. Closing keeps errno.
+// A descriptor that its owner closes when the owner ends, or is given another descriptor. Closing
+// keeps errno.
 #pragma once
 
 #include <errno.h>
@@ -23,9 +24,9 @@ class UniqueFd {
   int get() const { return fd_; }  // -1: none
   explicit operator bool() const { return fd_ >= 0; }
 
-  // Gives it away: the caller owns it.
+  // Gives the descriptor away: the caller owns it.
   [[nodiscard]] int Release() { return std::exchange(fd_, -1); }
-  // Closes it and takes that one over. Must not be the same.
+  // Closes the descriptor and takes `fd` over, which must not be the same.
   void Reset(int fd = -1) {
     const int old = std::exchange(fd_, fd < 0 ? -1 : fd);
     if (old < 0) return;

@@ -11,17 +11,18 @@
 
 namespace tcs {
 
-// Until the epoll set has events, which are put there, and at most so long (negative: without
-// limit). How many there are. While it waits the programs' threads have the processor.
+// Waits until the epoll set has events, which are put into `events`, and at most so long (negative:
+// without limit). Returns how many there are. While the coordinator waits the programs' threads
+// have the processor.
 std::size_t WaitForEvents(int epoll, std::span<epoll_event> events, HostDuration timeout);
 
-// Until there is something to read, or at most so long.
+// Waits until there is something to read, or at most so long.
 void AwaitReadable(int fd, HostDuration at_most);
 
 // Sleeps for so long, whatever comes meanwhile.
 void Pause(HostDuration duration);
 
-// One of those that sleep in the kernel at the word.
+// Wakes one of the threads that sleep in the kernel at the word.
 void WakeAt(std::atomic<std::uint32_t>& word);
 
 }  // namespace tcs

@@ -30,7 +30,7 @@ pid_t PeerOf(int connection) {
   return peer.pid;
 }
 
-// As tcsim numbers whoever speaks. False: it speaks for another process.
+// Numbers the process that speaks as tcsim does. False: the process speaks for another one.
 bool Renumber(shm::AttachHello& hello, pid_t peer) {
   if (hello.pid == peer) return true;
   const OwnNumber own = OwnNumberOf(peer);

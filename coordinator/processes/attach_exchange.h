@@ -1,8 +1,8 @@
 // The coordinator's part of one exchange of shm/attach_protocol.h. A process that connects can
 // claim anything; the kernel says which process it is.
 //
-// For the coordinator's thread only. None of this waits: a client that does not read has lost the
-// answer.
+// For the coordinator's thread only. No function here waits: a client that does not read has lost
+// the answer.
 #pragma once
 
 #include <sys/types.h>
@@ -15,9 +15,9 @@
 
 namespace tcs {
 
-// What the process wants, as far as it has said so; nothing if that is not a hello. Its numbers are
-// tcsim's. `peer`: which process it is, where the kernel does not tell that of the connection; 0:
-// it does.
+// The process's request, as far as the process has said it; nothing if that is not a hello. The
+// numbers in the hello are tcsim's. `peer`: which process has connected, where the kernel does not
+// tell that of the connection; 0: the kernel does.
 std::optional<shm::AttachHello> PeekHello(int connection, pid_t peer = 0);
 
 struct TakenHello {

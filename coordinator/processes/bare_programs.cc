@@ -52,7 +52,7 @@ void BarePrograms::Begins(pid_t pid) {
     unknown_.insert(pid);
   }
   if (Task* first = run_.table.Living(pid); first != nullptr) {
-    first->end_word = 0;  // that of the program before
+    first->end_word = 0;  // the end word of the program before
     first->can_be_stopped = false;
   }
   if (run_.IsFixed()) RepeatKernelsDraws(pid, told);
@@ -60,8 +60,8 @@ void BarePrograms::Begins(pid_t pid) {
   LeadCounter(pid, process, name);
 }
 
-// As the shim does for others. Whether the process is known by now must not show: one sequence is
-// for all.
+// As the shim does for other programs. Whether the process is known by now must not show: one
+// sequence is for all processes.
 void BarePrograms::RepeatKernelsDraws(pid_t pid,
                                       const std::map<std::uint64_t, std::uint64_t>& told) {
   const auto at = told.find(AT_RANDOM);

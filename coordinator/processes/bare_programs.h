@@ -1,5 +1,6 @@
 // Programs of clients into which the loader preloads no shim: statically linked ones, and those of
-// another C library. They are told from others when they begin, before they have read any clock.
+// another C library. Such programs are told from others when they begin, before they have read any
+// clock.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -22,7 +23,8 @@ class BarePrograms {
 
   // The process has executed a program, which is about to set itself up.
   void Begins(pid_t pid);
-  // It did so before it was known who it is. Once: it is known from now on.
+  // Whether the process did so before it was known which process it is. True once: the process is
+  // known from now on.
   bool TakeUnknown(pid_t pid) { return unknown_.erase(pid) != 0; }
 
  private:

@@ -31,7 +31,7 @@ std::string PrepareFolder(const ClientSpec& client) {
 
 }  // namespace
 
-// One that is never started has no log.
+// A client that is never started has no log.
 std::string PrepareFolders(const Scenario& scenario, const RunOptions& options) {
   for (const RobotSpec& robot : scenario.robots) {
     for (const ClientSpec& client : robot.clients) {

@@ -1,4 +1,4 @@
-// What of the clients is in a run's results before they start: their folders, and no log of an
+// The clients' part of a run's results before the clients start: their folders, and no log of an
 // earlier run.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What is said of programs that read the processor's cycle counter, where the shim could not lead
+// The warning about programs that read the processor's cycle counter, where the shim could not lead
 // the read to the virtual one.
 //
 // For the coordinator's thread only.
@@ -11,7 +11,7 @@
 
 namespace tcs {
 
-// Where reads of it are that are the processor's still.
+// Where reads of the counter are that are the processor's still.
 struct CounterReads {
   std::int64_t places = 0;
   std::uint64_t first = 0;  // an address in the program

@@ -16,8 +16,8 @@ namespace tcs {
 
 namespace {
 
-// What real time the grace may take: twice what all virtual CPUs take that compute all through it,
-// and some to begin with. If somebody waits for the end, no more than the guardian allows for.
+// The real time that the grace may take: twice what all virtual CPUs take that compute all through
+// it, and some to begin with. If somebody waits for the end, no more than the guardian allows for.
 constexpr HostDuration kLeastReal = HostDuration::Seconds(2),
                        kMostRealIfAsked = HostDuration::Seconds(6);
 constexpr double kMostRealFactor = 2.0;
@@ -30,7 +30,7 @@ VirtualDuration GraceOf(const Process& process) {
 
 }  // namespace
 
-// What a program alone is asked with is what its user has sent.
+// A program alone is asked with the signal that its user has sent.
 int Grace::StopSignalOf(const Process& process) const {
   if (run_.options.output_directory.empty() && run_.stop.asked()) return run_.stop.signal();
   return process.client == nullptr ? SIGTERM : process.client->spec->stop_signal;
@@ -53,8 +53,8 @@ void Grace::Begin() {
   signalled_({.at = run_.grace_began, .from_outside = true});
 }
 
-// What a thread has computed out of its turn passes without it first, and would be most of its
-// grace: where a tracer or a busy host held the coordinator up, say.
+// The time that a thread has computed out of its turn passes without the thread first, and would be
+// most of its grace: where a tracer or a busy host held the coordinator up, say.
 void Grace::GrantDebtOf(const Process& process) {
   VirtualDuration debt;
   for (const Task* task : process.robot->tasks) {
@@ -108,7 +108,7 @@ VirtualTime Grace::KillTimeOf(const Process& process) const {
                                     : later->second;
 }
 
-// Where the kernel has one of its threads, what is left of its grace in real time.
+// Where the kernel has one of the process's threads, the rest of the process's grace in real time.
 VirtualDuration Grace::LeftInRealTime(const Process& process) const {
   const auto& tasks = process.robot->tasks;
   const bool has_kernel = std::any_of(tasks.begin(), tasks.end(), [&process](const Task* task) {
@@ -137,7 +137,7 @@ bool Grace::KillOverdue() {
   return awaits;
 }
 
-// If there was no time for their graces: all that is left is killed.
+// If there was no time for the processes' graces: all processes that are left are killed.
 void Grace::WarnOfThoseLeft() {
   if (!ran_out_) return;
   for (const Process& process : run_.table.processes()) {

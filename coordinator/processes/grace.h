@@ -1,12 +1,12 @@
-// The end of a run for the clients that still live. Each gets a signal, and a grace of virtual time
-// in which it may write what it has and exit; then it is killed. The results stand already: the
-// world has stopped, and nothing of this is recorded. The engine's loop goes on meanwhile, from one
-// client's kill to the next one's:
+// The end of a run for the clients that still live. Each client gets a signal, and a grace of
+// virtual time in which it may write what it has and exit; then it is killed. The results stand
+// already: the world has stopped, and nothing of this is recorded. The engine's loop goes on
+// meanwhile, from one client's kill to the next one's:
 //
-//   Begin()                    all get their signals
+//   Begin()                    all clients get their signals
 //   while GoOnToNextKill()     the end of the loop is now then
 //     the loop, until that end, or IsOver()
-//     KillOverdue()            of whom the kernel has in its hands, that is waited for
+//     KillOverdue()            the end of clients that the kernel has in its hands is waited for
 //   WarnOfThoseLeft()
 //
 // For the coordinator's thread only. Times are virtual nanoseconds where not said otherwise; in
@@ -39,11 +39,11 @@ class Grace {
 
   // RunState::grace_began is set.
   void Begin();
-  // Sets the run's end to when the next client is to be killed. False if there is none: all have
-  // ended, or have been killed, or the grace is over.
+  // Sets the run's end to when the next client is to be killed. False if there is none: all clients
+  // have ended, or have been killed, or the grace is over.
   bool GoOnToNextKill();
-  // One that the kernel has in its hands gets its grace in real time, too, as virtual time goes on
-  // without it: true if such a one is waited for.
+  // A process that the kernel has in its hands gets its grace in real time, too, as virtual time
+  // goes on without it: true if such a process is waited for.
   bool KillOverdue();
   void WarnOfThoseLeft();
 

@@ -14,7 +14,7 @@ void KernelBlockedThreads::LendLevel() {
   std::vector<Task*> own, others;
   for (Task& task : run_.table.tasks()) {
     if (run_.turn.IsOf(task) || task.parked || task.state == TaskState::kDead) continue;
-    if (task.is_ahead) continue;  // it has a processor
+    if (task.is_ahead) continue;  // the thread has a processor
     if (task.may_run || ThreadState(task.tid) != 'R') continue;
     if (IsInUserMode(task.tid)) continue;
     (task.process == run_.turn.task()->process ? own : others).push_back(&task);

@@ -15,7 +15,7 @@ namespace tcs {
 
 namespace {
 
-// What the user has preloaded comes first, as the shim itself has it for what programs execute
+// The user's libraries come first, as the shim itself has it for what programs execute
 // (libtcs_preload/environment.cc).
 std::string WithOurLibraries(const std::string& users, const std::string& ours) {
   return users.empty() ? ours : users + ":" + ours;
@@ -35,7 +35,7 @@ SpawnRequest RequestFor(const ClientSpec& client, const Robot& robot, const RunO
       options.preload_library + (counts_allocations ? ":" + options.allocation_library : ""));
   request.fixed_layout = is_fixed;
   if (robot.is_ours) {
-    request.log_stdout = "/dev/null";  // what it says on stderr is for the user
+    request.log_stdout = "/dev/null";  // the text on stderr is for the user
   } else if (!options.output_directory.empty()) {
     const std::string base = options.output_directory + "/" + FileNameOf(client);
     request.log_stdout = base + ".out.log";
@@ -111,7 +111,7 @@ std::string Launches::Start(Launch& launch, VirtualTime at) {
   request.guarded = guarded_;
   request.trapped_too = {.executions = run_.SendsToGates(), .draws = run_.IsFixed()};
   request.computer = network_.ComputerOf(launch.number);
-  // Of those that ask their environment for it.
+  // For programs that ask their environment for the name.
   if (request.computer != nullptr && getenv("HOSTNAME") != nullptr) {
     request.environment.try_emplace("HOSTNAME", launch.robot->name);
   }

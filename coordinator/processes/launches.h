@@ -28,11 +28,11 @@ class Launches {
     const ClientSpec* spec;
     Robot* robot;
     std::size_t number;  // of the robot
-    VirtualTime start;   // never: it waits for another one to end
+    VirtualTime start;   // never: the client waits for another one to end
     Process* process;    // once started
   };
 
-  // The processes in `guarded` are tcsim's own. All of these outlive this.
+  // The processes in `guarded` are tcsim's own. The arguments outlive this.
   Launches(RunState& run, Waker& waker, ThreadCreation& thread_creation,
            RegistrationSockets& sockets, TrapListeners& traps, const World& world,
            const RobotNetwork& network, const std::vector<pid_t>& guarded)
@@ -58,7 +58,7 @@ class Launches {
 
   // Whether a client is still to be started, at a time that is known.
   bool AreAhead() const;
-  // As in the scenario.
+  // In the order of the scenario.
   const std::vector<Launch>& all() const { return launches_; }
 
  private:

@@ -53,7 +53,7 @@ bool Peers::IsOfRun(std::uint64_t inode) {
   return known->second;
 }
 
-// One that is still being connected is in the kernel's tables only.
+// The remote address of a socket that is still being connected is in the kernel's tables only.
 std::optional<InternetAddress> Peers::RemoteOf(const Process& process, int fd, bool is_tcp,
                                                sockaddr_storage* peer) {
   socklen_t size = sizeof *peer;
@@ -67,8 +67,8 @@ std::optional<InternetAddress> Peers::RemoteOf(const Process& process, int fd, b
   return std::nullopt;
 }
 
-// By its tables, where the kernel says it in no other way. Who listens there is asked first: that
-// is the same one for all connections.
+// The server by the process's tables, where the kernel says it in no other way. A socket that
+// listens there goes first: it is the same one for all connections.
 std::uint64_t Peers::ServerInTables(const Process& process, const InternetAddress& remote,
                                     bool is_tcp) {
   std::uint64_t server = 0;
@@ -117,7 +117,8 @@ std::optional<Peers::Peer> Peers::UnixPeer(const Process& process, int fd) {
   ucred maker{};
   socklen_t maker_size = sizeof maker;
   getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &maker, &maker_size);
-  // Who has made the listener is asked first, which costs less than to look for it.
+  // The process that has made the listener is looked at first, which costs less than to look for
+  // the listener.
   if (maker.pid == getpid() || run_.table.LivingProcess(maker.pid) != nullptr) return peer;
   const std::vector<UnixSocket> sockets = UnixSocketsOf(TableOf(process, "unix"));
   const bool is_stream = OptionOf(fd, SO_TYPE) != SOCK_DGRAM;

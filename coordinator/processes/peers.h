@@ -1,4 +1,5 @@
-// Whom programs of the run meet by their sockets: another program of the run, or somebody outside.
+// The peers that programs of the run meet by their sockets: other programs of the run, or somebody
+// outside.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -23,9 +24,9 @@ class Peers {
     std::string name;  // HOST:PORT, a path, or '@' and an abstract name
     bool is_outside = false;
   };
-  // Of a socket of the process's that is connected, or is being connected, given a copy of it. None
-  // where there is no peer, or none that has a name. Where it is not known who the peer is, it is
-  // of the run.
+  // The peer of a socket of the process's that is connected, or is being connected, given a copy of
+  // the socket. None where there is no peer, or none that has a name. A peer that is not known
+  // counts as one of the run.
   std::optional<Peer> Of(const Process& process, int fd);
 
   // Whether a process of the run has the socket with that inode.

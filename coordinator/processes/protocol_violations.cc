@@ -16,7 +16,8 @@ constexpr HostDuration kMostExit = HostDuration::Seconds(1);
 
 }  // namespace
 
-// Its threads get to the end at once, and nobody runs meanwhile: it takes the kernel some steps.
+// The process's threads get to their end at once, and no other thread runs meanwhile: the end takes
+// the kernel some steps.
 void ProtocolViolations::EndProcess(Process& process, const char* what) {
   if (std::exchange(process.violates_protocol, true)) return;
   if (!std::exchange(process.client->has_erred, true))

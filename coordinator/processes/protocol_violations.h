@@ -16,8 +16,9 @@ class ProtocolViolations {
   ProtocolViolations(RunState& run, Waker& waker, HostCpu& cpu)
       : run_(run), waker_(waker), cpu_(cpu) {}
 
-  // Kills it. `what` is wrong, and goes on after "has written what cannot be (". Its threads wait
-  // for nothing any more but their end; the running one's turn ends as ever. Once is enough.
+  // Kills the process. `what` is wrong, and goes on after "has written what cannot be (". The
+  // process's threads wait for nothing any more but their end; the running one's turn ends as ever.
+  // Once is enough.
   void EndProcess(Process& process, const char* what);
   // The thread waits for nothing any more.
   void AwaitExit(Task& task);

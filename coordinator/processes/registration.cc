@@ -84,7 +84,7 @@ bool Registration::Register(const Connection& connection, EventTime when) {
   return TakePlace(fd, hello, *connection.client, when);
 }
 
-// Why it cannot be what it says that it is; null if it is.
+// Why the process cannot be what it says that it is; null if it is.
 const char* Registration::WhyNot(const shm::AttachHello& hello, EventTime when) {
   const bool is_known = run_.table.LivingProcess(hello.pid) != nullptr;
   if (!IsThreadOf(hello.pid, hello.tid) || (!is_known && !DescendsFrom(hello.pid, getpid()))) {
@@ -136,7 +136,7 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   return true;
 }
 
-// Who waits at the sockets for an answer would wait for ever, and the run's end for it.
+// A process that waits at the sockets for an answer would wait for ever, and the run's end for it.
 void Registration::EndForWantOfFiles() {
   if (run_.report.error.empty()) run_.report.error = WhyNoFurtherFile();
   parts_.sockets.Close();
@@ -181,18 +181,18 @@ void Registration::GivePlace(Task& task, EventTime when, std::uint64_t end_word,
   task.can_be_stopped = !process.is_bare;
   PlaceAtGate(task, when.at, true);
   task.parked = false;
-  // What it computes from here on is its own, before its first dispatch, too.
+  // The computing of the thread from here on is its own, before its first dispatch, too.
   task.metered.host_origin_ns = is_newborn ? 0 : HostClockOf(task);
   HostCpu::AllowWay(task);
 }
 
 // The thread that registers: known already (a client, an announced child), a further thread of a
-// known process, or a process that nobody announced. If whoever made it has ended, it is at least
-// known which client's descendant it is: by the socket that it has come to.
+// known process, or a process that nobody announced. If the maker of the process has ended, it is
+// at least known which client's descendant the process is: by the socket that it has come to.
 Task& Registration::TaskFor(pid_t pid, pid_t tid, Process& client, EventTime when) {
   if (Task* known = run_.table.Living(tid); known != nullptr) {
     if (known->process->pid == pid) return *known;
-    parts_.thread_exit.End(*known, when);  // its number is another's now
+    parts_.thread_exit.End(*known, when);  // the thread's number is another's now
   }
   if (Process* known = run_.table.LivingProcess(pid); known != nullptr) {
     return parts_.thread_creation.AddThread(*known, tid, when.at);
@@ -203,7 +203,8 @@ Task& Registration::TaskFor(pid_t pid, pid_t tid, Process& client, EventTime whe
                                          when.at);
 }
 
-// The C library has taken back what an ended thread had there. Who waits there already, joins.
+// The C library has taken back what an ended thread had there. A thread that waits there already
+// joins.
 void Registration::TakeEndWord(Task& task, std::uint64_t address) {
   for (Task& other : run_.table.tasks()) {
     if (other.process != task.process) continue;
@@ -223,14 +224,14 @@ void Registration::GiveDdsArea(int connection, pid_t pid) {
   Accept(connection, 0, std::span(&fd, 1));
 }
 
-// It may still be null afterwards.
+// The link may still be null afterwards.
 void Registration::Connect(Process& process) {
   process.link = ProcessLink::Make();
   if (process.link == nullptr) return;
   parts_.reactor.Add(process.link->incoming_fd(), EPOLLIN, {Tag::kPipe, process.index});
 }
 
-// The end of a connection for the broker that it is about to make; none: errno is set.
+// The end of a connection for the broker that the process is about to make; none: errno is set.
 UniqueFd Registration::GiveBroker(Process& process) {
   process.broker.reset();  // of the program before
   process.broker = DescriptorBroker::Make([this, name = process.name] {
@@ -241,7 +242,8 @@ UniqueFd Registration::GiveBroker(Process& process) {
   return process.broker == nullptr ? UniqueFd() : process.broker->TakeClientsEnd();
 }
 
-// Ready for its first dispatch; or for the first of another program. `is_first`: it had no place.
+// The thread is ready for its first dispatch, or for the first of another program. `is_first`: the
+// thread had no place.
 void Registration::PlaceAtGate(Task& task, VirtualTime at, bool is_first) {
   shm::ThreadSlot& slot = SlotOf(task);
   slot.pid = task.process->own_pid;
@@ -249,7 +251,8 @@ void Registration::PlaceAtGate(Task& task, VirtualTime at, bool is_first) {
   slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
   slot.robot = task.process->robot->number;
   slot.seed = run_.scenario.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
-  // What it draws by trapped calls is a sequence of its own, which begins with the program, too.
+  // The draws of the process by trapped calls are a sequence of their own, which begins with the
+  // program, too.
   if (is_first && task.tid == task.process->pid) task.process->draws.Seed(~slot.seed);
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.leads_counter = task.process->leads_counter ? 1 : 0;

@@ -2,13 +2,13 @@
 // becomes, and when. A process that connects can claim anything; only what the kernel says of it
 // counts.
 //
-// While the kernel holds the thread whose turn it is, others of the run get the processor, and so
-// come as far as here. When they do depends on the host, so it must not show: such a thread
-// registers later, at its own first dispatch; or, if its maker runs and has not said yet that it
-// has made it, once it has.
+// While the kernel holds the thread whose turn it is, other threads of the run get the processor,
+// and so come as far as here. When they do depends on the host, so it must not show: such a thread
+// registers later, at its own first dispatch; or, if its maker runs and has not told yet of the
+// thread that it has made, once the maker has.
 //
-// For the coordinator's thread only. Never waits. `when` is when it happens, for threads that did
-// not have to wait for it.
+// For the coordinator's thread only. Never waits. `when` is when the registration happens, for
+// threads that did not have to wait for it.
 #pragma once
 
 #include <sys/types.h>
@@ -33,7 +33,7 @@ namespace tcs {
 
 class Registration {
  public:
-  // The parts that it needs. They outlive it.
+  // The parts that a Registration needs, and that outlive it.
   struct Parts {
     RunState& run;
     Waker& waker;
@@ -46,7 +46,7 @@ class Registration {
   };
 
   struct Callbacks {
-    // Of a process that is new, or executes another program: what it had before is gone.
+    // A process is new, or executes another program: all that the process had before is gone.
     std::function<void(Process&, EventTime)> starts_anew;
     // The memory through which the process exchanges DDS messages; -1 if it has not joined.
     std::function<int(const Process&)> dds_area_of;
@@ -55,26 +55,26 @@ class Registration {
   Registration(const Parts& parts, Callbacks callbacks)
       : parts_(parts), run_(parts.run), callbacks_(std::move(callbacks)) {}
 
-  // The run's memory, which all that register get to see.
+  // The run's memory, which all processes that register get to see.
   void ShareMemory(int fd) { memory_fd_ = fd; }
 
   // A process that has connected says what it wants, at that descriptor. True if the running thread
   // has to be stopped.
   bool Heard(int fd, EventTime when);
   // A thread that has no place yet has made a trapped call. If its program runs without the shim,
-  // or such a one has forked it, it will never register, and has its place from now on; null: it
-  // will, or is unregistered.
+  // or such a program has forked it, the thread will never register, and has its place from now on;
+  // null: the thread will register, or is unregistered.
   Task* Adopt(pid_t tid, EventTime when);
   // The thread, which is known, has its place without registering; it may do so later. The kernel
-  // clears `end_word` when it ends (0: it is not known which). `is_newborn`: all that it has
-  // computed is its own.
+  // clears `end_word` when the thread ends (0: the word is not known). `is_newborn`: all that the
+  // thread has computed is its own.
   void GivePlace(Task& task, EventTime when, std::uint64_t end_word, bool is_newborn);
   // The thread is dispatched, and registers now if it has wanted to before.
   void LetRegister(const Task& dispatched);
   // The turns of the threads that make others are over, and they have announced none of the threads
   // that wait to register.
   void RegisterUnannounced(EventTime when);
-  // No further process can be followed: nobody else is accepted, and the run ends with a sentence.
+  // No further process can be followed: no other one is accepted, and the run ends with a sentence.
   void EndForWantOfFiles();
   // The thread has ended.
   void Forget(const Task& ended) { early_.erase(ended.tid); }

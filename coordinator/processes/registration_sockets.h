@@ -24,23 +24,23 @@ namespace tcs {
 
 class RegistrationSockets {
  public:
-  // A process that has connected says at once what it wants. Of the ones that do not, the earliest
-  // are cut off.
+  // A process that has connected says at once what it wants. Of the processes that do not, the
+  // earliest are cut off.
   static constexpr std::size_t kMostSilent = 256;
 
   // A process that has not yet said what it wants.
   struct Connection {
     UniqueFd fd;
-    Process* client;  // that the socket is for
-    // Which process it is, by tcsim's number, if it came by a call (ConnectBy); 0: the kernel
-    // knows.
+    Process* client;  // the client that the socket is for
+    // The process's number, as tcsim has it, if the process came by a call (ConnectBy); 0: the
+    // kernel knows.
     pid_t peer = 0;
   };
 
   explicit RegistrationSockets(Reactor& reactor);
 
   // A socket for the next client and its descendants, which programs on that computer find (null:
-  // on the host). Its name, or nothing: errno is set.
+  // on the host). Returns the socket's name, or nothing: errno is set.
   std::string Open(const OwnComputer* computer);
   // The socket that was opened last is that client's. Call it before a process can have connected
   // there.
@@ -48,15 +48,15 @@ class RegistrationSockets {
 
   // False: there is a connection, but no descriptor for it that the run could spare.
   [[nodiscard]] bool Accept(std::uint32_t number);
-  // Nobody comes any more: whoever has connected and has not been accepted, or connects later, is
-  // refused.
+  // No process comes any more: a process that has connected and has not been accepted, or connects
+  // later, is refused.
   void Close();
   // The trapped call is to connect to one of the sockets, from a network namespace where there is
-  // none (a sandbox's). It is carried out here, and answered; false: it is another call.
+  // none (a sandbox's). The call is carried out here, and answered; false: it is another call.
   bool ConnectBy(const TrappedCall& call);
-  // It has not been heard yet, or will be heard again.
+  // The connection has not been heard yet, or will be heard again.
   void Add(Connection connection);
-  // It says something; nothing if it was cut off.
+  // The connection says something; nothing if it was cut off.
   std::optional<Connection> Take(int fd);
 
  private:
@@ -66,7 +66,7 @@ class RegistrationSockets {
   };
 
   Reactor& reactor_;
-  const std::string name_;  // of all; each has its number behind it
+  const std::string name_;  // of all sockets, each with its number behind this
   std::vector<Socket> sockets_;
   std::deque<Connection> silent_;  // the earliest first
 };

@@ -15,12 +15,12 @@ namespace tcs {
 
 namespace {
 
-constexpr std::uint16_t kFirstPort = 11511;  // that of domain 0
+constexpr std::uint16_t kFirstPort = 11511;  // the port of domain 0
 constexpr unsigned kMostDomain = 232;
 
 struct Command {
   std::string_view name;
-  std::string_view silent_verbs;  // those that ask no daemon
+  std::string_view silent_verbs;  // verbs that ask no daemon
 };
 constexpr Command kCommands[] = {
     {"action", " send_goal echo "},
@@ -61,7 +61,7 @@ bool IsRos2(const std::string& argument) {
 
 std::optional<std::uint16_t> PortOfRosDaemon(const std::vector<std::string>& arguments,
                                              const std::string& domain) {
-  // Behind its interpreter, if it has one.
+  // The command is behind its interpreter, if it has one.
   const auto last = arguments.begin() + std::min<std::ptrdiff_t>(2, std::ssize(arguments));
   const auto begin = std::find_if(arguments.begin(), last, IsRos2);
   if (begin == last || arguments.end() - begin < 3) return std::nullopt;

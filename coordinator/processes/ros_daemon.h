@@ -1,7 +1,7 @@
 // The command line of ROS 2 asks a daemon of its computer which nodes and topics there are. A
 // daemon that was started outside of the run, by whatever was typed at this computer before,
-// answers with what is outside, and knows nothing of the run. Such commands are named when they
-// begin.
+// answers with what is outside, and knows nothing of the run. Commands that ask such a daemon are
+// named when they begin.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -18,9 +18,9 @@
 
 namespace tcs {
 
-// The port of the loopback interface at which a command asks its daemon, if it is one of those that
-// do. `arguments`: the command's, with the interpreter's first. `domain`: its ROS_DOMAIN_ID, empty
-// where there is none.
+// The port of the loopback interface at which a command asks its daemon, if the command is one that
+// does. `arguments`: the command's, with the interpreter's first. `domain`: the command's
+// ROS_DOMAIN_ID, empty where there is none.
 std::optional<std::uint16_t> PortOfRosDaemon(const std::vector<std::string>& arguments,
                                              const std::string& domain);
 

@@ -26,7 +26,7 @@ std::string RunRecords::OpenFiles() {
   const std::string& directory = run_.options.output_directory;
   if (directory.empty()) return {};
   if (run_.options.before_writing) run_.options.before_writing();
-  // It says that a run has ended, and that of an earlier one would say it of this one.
+  // Such a file says that a run has ended, and that of an earlier run would say it of this one.
   std::error_code ignored;
   for (const char* file : {"/summary.json", "/unfinished.json"}) {
     std::filesystem::remove(directory + file, ignored);
@@ -47,7 +47,7 @@ std::string RunRecords::OpenFiles() {
   metrics_.OpenIn(directory);
   world_.Measure(metrics_);
   output_.Tell([this](const std::string& client, std::int64_t end, std::int64_t now_ns) {
-    // What is printed after the run's end counts at its end.
+    // Text that is printed after the run's end counts at its end.
     client_metrics_.Grew(client, end, std::min(now_ns, run_.grace_began.ns()));
   });
   return error;
@@ -67,7 +67,7 @@ void RunRecords::Flush(bool for_watchers) {
   responses_.Flush();
   world_.FlushRecords();
   output_.Flush();
-  // Their lines would stand where real time has it among those of the scenario's metrics.
+  // The lines of clients' metrics would stand where real time has it among those of the scenario's.
   if (for_watchers || !run_.IsFixed()) client_metrics_.CatchUp();
   metrics_.Flush();
 }
@@ -83,7 +83,7 @@ std::string RunRecords::Close() {
 }
 
 std::string RunRecords::CloseMetrics(VirtualTime end) {
-  // Of a run that did not begin, what is there may be an earlier one's.
+  // Where the run did not begin, the text that is there may be an earlier run's.
   if (run_.header != nullptr) client_metrics_.Finish(end.ns());
   return metrics_.Close();
 }

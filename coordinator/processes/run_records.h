@@ -1,6 +1,6 @@
-// What a run writes about itself while it goes (docs/RESULTS.md): the schedule trace, the
-// activations of clients, which thread had the processor when, when clients printed something, and
-// what the world did. A run without a folder for its results writes nothing.
+// The records that a run writes about itself while it goes (docs/RESULTS.md): the schedule trace,
+// the activations of clients, which thread had the processor when, when clients printed something,
+// and what the world did. A run without a folder for its results writes nothing.
 //
 // For the coordinator's thread only. Errors are one sentence; empty is success.
 #pragma once
@@ -22,7 +22,7 @@ namespace tcs {
 
 class RunRecords {
  public:
-  // On the clock of who ran, and on the world's, which may stand still meanwhile.
+  // On the clock of the program that ran, and on the world's, which may stand still meanwhile.
   struct ShownSpan {
     ProgramTime start, end;
   };
@@ -36,19 +36,19 @@ class RunRecords {
   RunRecords(const RunRecords&) = delete;
   RunRecords& operator=(const RunRecords&) = delete;
 
-  // Once the world is open; what an earlier run has left there is removed.
+  // Once the world is open; files that an earlier run has left there are removed.
   [[nodiscard]] std::string Open();
-  // Then, if at all. The feed, which is open, outlives this; it is told of each turn, and what it
-  // tells of is written.
+  // After Open, if at all. The feed, which is open, outlives this; the feed is told of each turn,
+  // and what it tells of is written.
   [[nodiscard]] std::string Follow(AnswerFeed& answers);
   // From when real times count.
   void StartAt(const RunClock& clock);
-  // So that what is left of a run that is killed ends shortly before. Of a run with set costs the
-  // metrics that programs print follow at its end, in an order that is always the same, unless
-  // somebody watches it.
+  // So that the records of a run that is killed end shortly before. Of a run with set costs the
+  // metrics that programs print follow at the run's end, in an order that is always the same,
+  // unless somebody watches the run.
   void Flush(bool for_watchers);
   [[nodiscard]] std::string Close();
-  // Once no client lives any more: what they have printed to their end counts, at `end`.
+  // Once no client lives any more: what clients have printed to their end counts, at `end`.
   [[nodiscard]] std::string CloseMetrics(VirtualTime end);
   [[nodiscard]] MetricsOfRun Metrics() const { return metrics_.Figures(); }
   [[nodiscard]] MetricsOfRun Expected() const { return metrics_.Expected(); }
@@ -57,10 +57,11 @@ class RunRecords {
   int AddRow(const std::string& group, const std::string& name) {
     return schedule_.AddRow(group, name);
   }
-  // The running thread has stopped at `until_tsc`. It may be settled again in the same turn.
+  // The running thread has stopped at `until_tsc`. The thread may be settled again in the same
+  // turn.
   void Ran(const Task& task, ShownSpan shown, WorldSpan world, std::uint64_t until_tsc);
-  // A thread has a turn beside others: what its client writes meanwhile is of that turn, which has
-  // not ended, until it does.
+  // A thread has a turn beside others. Until that turn ends, text that the thread's client writes
+  // is of that turn, which has not ended.
   void BeganBeside(const Task& task) { output_.Hold(task.process->client->name); }
   void EndsBeside(const Task& task) { output_.LetGo(task.process->client->name); }
   // The dynamics were integrated.

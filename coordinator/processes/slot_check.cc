@@ -17,7 +17,7 @@ constexpr std::int64_t kSlackNs = 10'000'000;
 // More than all ways out of gates in one dispatch take, and than the TSC can miss.
 constexpr std::int64_t kLargeSlackNs = 1'000'000'000;
 
-// More cannot have passed on that robot, in a run that has taken so long.
+// Whether so much time can have passed on that robot, in a run that has taken so long.
 bool CanHavePassed(std::int64_t ns, std::int64_t run_ns, const Robot& robot) {
   return static_cast<double>(ns) <= static_cast<double>(run_ns + kLargeSlackNs) / robot.speed;
 }

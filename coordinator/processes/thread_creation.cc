@@ -92,7 +92,7 @@ Task& ThreadCreation::AddChild(pid_t pid, pid_t parent, const Process& maker, Vi
   process.allocation_cost = maker.allocation_cost;
   process.patch_vdso = maker.patch_vdso;
   process.leads_counter = maker.leads_counter;
-  // That of the gateway speaks to programs by sockets.
+  // The gateway's child speaks to programs by sockets.
   process.dds_endpoints = maker.dds_endpoints && !maker.robot->is_ours;
   process.clock = maker.clock.Fork();
   InheritCpuLimit(maker, process);

@@ -67,7 +67,7 @@ bool ThreadExit::EndThreadsLostInExec(pid_t pid, EventTime when) {
   of->has_unregistered_threads = false;
   if (first == nullptr || !by_another) return true;
   of->ended.NoteChangedClocks();
-  // The processor clock under its number is another thread's from now on.
+  // The processor clock under the first thread's number is another thread's from now on.
   first->cpu_clock_fd.Reset();
   first->metered.host_origin_ns = HostClockOf(*first) - first->metered.OnHost(first->charged).ns();
   return true;
@@ -103,7 +103,8 @@ void ThreadExit::ProcessEnded(std::uint32_t index, EventTime when) {
   Reap(process);
 }
 
-// Most programs that are refused io_uring do without. One that fails then may have failed for that.
+// Most programs that are refused io_uring do without. A program that fails then may have failed for
+// that.
 void ThreadExit::TellOfRefusal(const Process& process) const {
   const int status = EndOf(process.pid).value_or(0);
   const bool gave_up = WIFEXITED(status) ? WEXITSTATUS(status) != 0 : WTERMSIG(status) == SIGABRT;
@@ -114,13 +115,13 @@ void ThreadExit::TellOfRefusal(const Process& process) const {
       process.client->name));
 }
 
-// If it is the coordinator's own child.
+// Reaps the process if it is the coordinator's own child.
 void ThreadExit::Reap(Process& process) {
   const std::optional<int> status = WaitStatusOf(process.pid);
-  if (!status.has_value()) return;  // its parent's to reap
+  if (!status.has_value()) return;  // the parent is to reap it
   process.wait_status = *status;
-  // Of several threads the last may still be at what KernelBlockedThreads::LetDie says: those are
-  // reaped at the run's end, when nobody here is at a real-time priority any more.
+  // Of several threads the last may still be at what KernelBlockedThreads::LetDie says: such
+  // processes are reaped at the run's end, when no thread here is at a real-time priority any more.
   if (process.threads == 1) waitpid(process.pid, nullptr, WNOHANG);
   if (process.index == 0) {
     run_.report.exit_status = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);

@@ -1,5 +1,5 @@
-// How threads and processes end: what they have used is kept, what they held is given up, and
-// others are told.
+// How threads and processes end: their usage is kept, what they held is given up, and others are
+// told.
 //
 // For the coordinator's thread only. Times are virtual nanoseconds.
 #pragma once
@@ -24,18 +24,19 @@ namespace tcs {
 
 class ThreadExit {
  public:
-  // Other parts that keep something for threads and processes. All must be set.
+  // Other parts that keep something for threads and processes. All functions must be set.
   struct Listeners {
     // The thread is running, or was right now: it is to be charged up to here.
     std::function<void(Task&)> settle;
-    // The thread ends: what was to come to it goes to others. It may still wait.
+    // The thread ends: events that were to come to it go to others. The thread may still wait.
     std::function<void(Task&, EventTime)> thread_ends;
-    // It has: nothing is kept for it any more.
+    // The thread has ended: nothing is kept for it any more.
     std::function<void(Task&)> thread_has_ended;
-    // The kernel's own wake does not reach the threads that wait for its end, or for a lock of its.
+    // The kernel's own wake does not reach the threads that wait for the thread's end, or for a
+    // lock of the thread's.
     std::function<void(Task&, EventTime)> wake_those_waiting_for;
     std::function<void(Process& parent, pid_t child, EventTime)> child_has_ended;
-    // After its threads, and after its parent was told.
+    // After the process's threads, and after the process's parent was told.
     std::function<void(Process&, EventTime)> process_has_ended;
   };
 
@@ -45,13 +46,14 @@ class ThreadExit {
 
   // The thread is gone, or is about to; its number may be another's already.
   void End(Task& task, EventTime when);
-  // Only the coordinator can tell the threads that wait for it.
+  // Only the coordinator can tell the threads that wait for the thread.
   void EndAndWake(Task& task, EventTime when);
 
   // The process has ended, as the kernel says.
   void ProcessEnded(std::uint32_t index, EventTime when);
-  // A thread that executes another program becomes its process's first one; all others have ended,
-  // and no other event says so. False if they have not: then it has executed nothing.
+  // A thread that executes another program becomes its process's first one; the other threads have
+  // ended, and no other event says so. False if they have not: then the thread has executed
+  // nothing.
   bool EndThreadsLostInExec(pid_t pid, EventTime when);
 
   // Between two steps of the loop: slots of processes that have ended can be read until then.

@@ -1,5 +1,5 @@
 // Where trapped calls arrive (os/trap.h): a descriptor for each client, of its threads and of all
-// that it starts. The reactor says when there are some (Tag::kTrap, with the descriptor's number).
+// that it starts. The reactor says when there are calls (Tag::kTrap, with the descriptor's number).
 //
 // For the coordinator's thread only.
 #pragma once

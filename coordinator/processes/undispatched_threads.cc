@@ -17,8 +17,8 @@ void Tell(Task& task) {
 
 }  // namespace
 
-// Another program has no handler for the signal, and would die of it. Whichever thread executes
-// that becomes its process's first one.
+// Another program has no handler for the signal, and would die of it. Whichever thread executes the
+// program becomes its process's first one.
 bool UndispatchedThreads::MayBeTold(const Task& task) const {
   if (run_.is_unprivileged || !run_.IsFixed()) return false;
   const Process& process = *task.process;
@@ -31,15 +31,15 @@ bool UndispatchedThreads::MayBeTold(const Task& task) const {
                                  });
 }
 
-// One that the kernel holds stays in its call: the signal would end it.
+// A thread that the kernel holds stays in its call: the signal would end the call.
 void UndispatchedThreads::TurnEnds(Task& task) {
   if (run_.turn.HasSpoken() || task.parked || !MayBeTold(task)) return;
   if (ThreadState(task.tid) == 'R') Tell(task);
 }
 
 // The kernel has the first signal that it delivers decide whether the interrupted call is made
-// again. That must be the program's: it delivers those for the thread before those for the process,
-// and of these the lowest first.
+// again. That signal must be the program's: the kernel delivers signals for the thread before those
+// for the process, and of these the lowest first.
 void UndispatchedThreads::SignalCame(Task& task, const SignalSets& sets) {
   constexpr std::uint64_t kOurs = SignalBit(shm::kPreemptionSignal), kBefore = kOurs - 1;
   const std::uint64_t first = sets.own_pending & sets.caught & ~BlockedOf(task, sets) & kBefore;
@@ -51,7 +51,7 @@ bool UndispatchedThreads::WentToGate(Task& task) {
   if (run_.is_unprivileged || SlotOf(task).note.kind != shm::NotificationKind::kPreempted)
     return false;
   if (run_.turn.IsOf(task)) {
-    // It was on its way there when it was dispatched.
+    // The thread was on its way there when it was dispatched.
     if (std::exchange(run_.turn.goes_on_from_gate, true)) return false;
     HostCpu::AllowWay(task);
     HostCpu::OpenGate(SlotOf(task));

@@ -39,7 +39,7 @@ Process* UnregisteredChildren::Ended(pid_t pid) {
   const Child child = std::move(found->second);
   reactor_.Remove(child.pidfd.get());
   living_.erase(found);
-  // A parent that waits for children of another kind leaves it there.
+  // A parent that waits for children of another kind leaves this child there.
   untaken_.insert(pid);
   return table_.LivingProcess(child.parent);
 }

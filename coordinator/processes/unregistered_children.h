@@ -1,6 +1,6 @@
 // Children that share their parents' memory without being threads, as a leak checker's that stops
-// its parent; and those whose creation was missed. They do not register. Their parent learns of
-// their end, and virtual time waits while they run.
+// its parent; and children whose creation was missed. Such children do not register. The parent
+// learns of their end, and virtual time waits while they run.
 //
 // For the coordinator's thread only. Reads /proc, and has the reactor watch for their ends
 // (Tag::kUnregisteredChild, with their numbers).
@@ -31,17 +31,17 @@ class UnregisteredChildren {
 
   // When a thread of the parent comes to wait for its children.
   void LookFor(const Process& parent);
-  // A child has ended. Its parent, which is to be told; null if it has none that lives.
+  // A child has ended. Returns the child's parent, which is to be told; null if no parent lives.
   Process* Ended(pid_t pid);
   // The parent has yielded again and again: perhaps it waits for a process that shares its memory
-  // and never registers (a sanitizer's that looks for leaks). If one runs it gets a little real
-  // time, and true is returned.
+  // and never registers (a sanitizer's that looks for leaks). If such a process runs it gets a
+  // little real time, and true is returned.
   bool LetRunBeside(const Process& parent);
 
   bool AreOf(const Process& parent) const;
-  // There are some whose end time waits for.
+  // Whether there are children whose end virtual time waits for.
   bool AnyCounts() const;
-  // Time waits: one is at work.
+  // Whether virtual time waits since such a child is at work.
   bool AnyRuns() const;
 
   // The living, by their numbers.

@@ -16,7 +16,8 @@ namespace {
 
 // Of processor time: for so long time waits for a thread that has no level any more.
 constexpr std::int64_t kCountsNs = 1'000'000'000;
-// Of processor time between two looks: whoever has used less does not keep the CPU from others.
+// Of processor time between two looks: a thread that has used less does not keep the CPU from
+// others.
 constexpr std::int64_t kComputesNs = 10'000'000;
 
 std::int64_t ClockOf(pid_t tid) {

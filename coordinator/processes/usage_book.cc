@@ -7,8 +7,8 @@ namespace tcs {
 
 namespace {
 
-// What the thread's own CPU clock says that it has used since it was first charged; 0 where it can
-// no longer be asked.
+// The time that the thread has used, by its own CPU clock, since it was first charged; 0 where the
+// clock can no longer be asked.
 std::int64_t HostCpuOf(Task& task) {
   if (!task.metered.has_origin()) return 0;
   const std::int64_t now = HostClockOf(task);
@@ -50,7 +50,7 @@ Usage UsageBook::UsageOf(const Process& process) const {
 Usage UsageBook::UsageOfAll(const Process& client) const {
   Usage usage = client.descendants;
   for (const Process& process : table_.processes()) {
-    // The others' that have ended is kept already, and their places may be others'.
+    // The usage of other ended processes is kept already, and their places may be others'.
     if (process.client != &client || (process.dead && !process.is_client)) continue;
     usage += UsageOf(process);
   }
@@ -65,7 +65,7 @@ void UsageBook::Keep(Task& ended) const {
       .activations = ended.activations,
       .work = ended.work,
   };
-  if (!ended.metered.has_origin()) {  // it never ran under its clock
+  if (!ended.metered.has_origin()) {  // the thread never ran under its clock
     process.ended.Add(usage, 0, 0, 0);
     return;
   }

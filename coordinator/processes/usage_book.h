@@ -1,8 +1,8 @@
-// What clients have used, including all processes that they have started, at any depth and
-// whichever process waits for them. For a living process it is read where it arises; for one that
-// has ended it is kept here.
+// The usage of clients, including all processes that they have started, at any depth and whichever
+// process waits for them. The usage of a living process is read where it arises; the usage of a
+// process that has ended is kept here.
 //
-// For the coordinator's thread only. What the kernel's CPU clocks say costs a system call.
+// For the coordinator's thread only. Reading one of the kernel's CPU clocks costs a system call.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,16 @@ class UsageBook {
  public:
   UsageBook(const TaskTable& table, const SlotCheck& check) : table_(table), check_(check) {}
 
-  // Of its threads, including the threads that have ended.
+  // The charges of the process's threads, including the threads that have ended.
   static VirtualDuration ChargedTo(const Process& process);
-  // With its descendants.
+  // With the client's descendants.
   VirtualDuration ChargedToAllOf(const Process& client) const;
   Usage UsageOfAll(const Process& client) const;
 
-  // The thread ends: what it has had goes to its process.
+  // The thread ends: its usage goes to its process.
   void Keep(Task& ended) const;
-  // The process has ended, and its threads' has been kept: what it has had goes to its client.
+  // The process has ended, and its threads' usage has been kept: the process's usage goes to its
+  // client.
   static void Keep(Process& ended);
 
  private:

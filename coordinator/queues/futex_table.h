@@ -33,7 +33,7 @@ class FutexTable {
   // The thread, which waits, is to be moved to that lock (FUTEX_WAIT_REQUEUE_PI): wakes pass it by
   // until it is there.
   void ExpectLock(Thread thread, const FutexKey& lock);
-  // Nothing happens if it does not wait.
+  // Nothing happens if the thread does not wait.
   void Leave(Thread thread);
   // Moves the thread from the one word to the other, behind the threads that wait there.
   void Move(Thread thread, const FutexKey& from, const FutexKey& to);
@@ -42,19 +42,19 @@ class FutexTable {
   std::optional<FutexKey> ExpectedLock(Thread thread) const;
   // The word's place among the words at which the thread waits; 0 if it is none of them.
   std::size_t IndexOf(Thread thread, const FutexKey& word) const;
-  // The word that it waits at, which must be one.
+  // The word at which the thread waits, which must be one.
   const FutexKey& WordOf(Thread thread) const;
-  // The first of those that it waits at; null: none.
+  // The first of the words at which the thread waits; null: none.
   const FutexKey* FirstWordOf(Thread thread) const;
 
   // False if no thread waits at this place of any page, and so none at this address, whatever it is
   // mapped to.
   bool MayBeWaitedAt(std::uint64_t address) const;
-  // Whom a wake with these bits is for; kNobody: none.
+  // The thread that a wake with these bits is for; kNobody: none.
   Thread MostUrgent(const FutexKey& word, std::uint32_t bits) const;
-  // Where somebody waits, each once, in the order of processes and addresses.
+  // The words at which threads wait, each once, in the order of processes and addresses.
   std::vector<FutexKey> AwaitedWords() const;
-  // All, in the order of waiting.
+  // The threads that wait at the word, in the order of waiting.
   std::vector<Thread> WaitersAt(const FutexKey& word) const;
   // The same, the most urgent first.
   std::vector<Thread> ByUrgency(const FutexKey& word) const;
@@ -78,7 +78,7 @@ class FutexTable {
 
   PriorityOf priority_of_;
   std::unordered_map<Thread, Waiting> waiting_;
-  std::unordered_map<FutexKey, std::vector<Thread>, Hash> queues_;  // none is empty
+  std::unordered_map<FutexKey, std::vector<Thread>, Hash> queues_;  // no queue is empty
   std::array<std::uint32_t, kWordsOfAPage> waits_by_place_{};
 };
 

@@ -22,7 +22,7 @@ std::vector<EventShare> ShareEvents(
     std::vector<EventWaiter> waiters,
     const std::function<bool(int first, int second)>& is_one_event) {
   std::stable_sort(waiters.begin(), waiters.end(), GoesBefore);
-  std::unordered_map<std::uint64_t, std::vector<int>> takers;  // that are woken, at each place
+  std::unordered_map<std::uint64_t, std::vector<int>> takers;  // woken ones, at each place
   std::vector<EventShare> shares;
   for (const EventWaiter& waiter : waiters) {
     shares.push_back({waiter.thread, kNoThread});

@@ -4,7 +4,7 @@
 // event for all; it passes the others over. When the first thread has tried, what it has left is
 // for the next thread that was passed over for it.
 //
-// Pure: threads are numbers; what is at a descriptor is asked of the caller.
+// Pure: threads are numbers; the caller is asked what is at a descriptor.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace tcs {
 
 struct EventWaiter {
   int thread = -1;
-  bool takes = false;          // else the event is for it in any case
-  bool last_is_first = false;  // the last that came goes first
+  bool takes = false;          // else the event is for the thread in any case
+  bool last_is_first = false;  // the waiter that came last goes first
   std::uint64_t order = 0;     // of waiting
   std::uint64_t place = 0;     // events at different places are never one
 };
@@ -25,7 +25,7 @@ inline constexpr int kNoThread = -1;
 
 struct EventShare {
   int thread = kNoThread;
-  int passed_over_for = kNoThread;  // none: it is woken
+  int passed_over_for = kNoThread;  // none: the thread is woken
 };
 
 // An event has come for all of these threads: which are woken, in the order of waiting, and which
@@ -35,7 +35,8 @@ std::vector<EventShare> ShareEvents(std::vector<EventWaiter> waiters,
                                     const std::function<bool(int first, int second)>& is_one_event);
 
 // The thread for which these were passed over has tried. The first of them that finds something is
-// next, and the ones behind it are now passed over for it. All others are not passed over any more.
+// next, and the ones behind it are now passed over for it. The other threads are not passed over
+// any more.
 struct Rest {
   int next = kNoThread;
   std::vector<int> behind;

@@ -23,7 +23,7 @@ constexpr std::int64_t kLookNs = shm::kShortIntervalNs;
 
 bool IsItimer(std::int64_t id) { return id >= ITIMER_REAL && id <= ITIMER_PROF; }
 
-// There from the beginning, and not deleted.
+// Timers that are there from the beginning, and not deleted.
 bool IsOfProcess(std::int64_t id) {
   return IsItimer(id) || id == ProcessTimers::kCpuLimit || id == ProcessTimers::kMostCpu;
 }
@@ -42,7 +42,7 @@ shm::TimerKind KindOfOwn(std::int64_t which) {
 
 }  // namespace
 
-// How often it has run out by then, on its clock; sets it to the next time.
+// How often the timer has run out by `clock_ns`, on its clock; sets the timer to its next time.
 std::int64_t ProcessTimers::Timer::TakeExpirations(std::int64_t clock_ns) {
   std::int64_t& next_ns = setting.next_ns;
   const std::int64_t interval_ns = setting.interval_ns;
@@ -140,8 +140,8 @@ void ProcessTimers::Set(Id id, Setting setting, VirtualDuration lead) {
   Timer* timer = Find(id);
   if (timer == nullptr) return;
   timer->setting.next_ns = std::max<std::int64_t>(0, setting.next_ns);
-  // The kernel forgets the interval of one that is disarmed, but for the timers of descriptors and
-  // those of setitimer on processor time.
+  // The kernel forgets the interval of a timer that is disarmed, but for the timers of descriptors
+  // and those of setitimer on processor time.
   const bool forgets = setting.next_ns <= 0 && (timer->kind.is_posix != 0 || id == ITIMER_REAL);
   timer->setting.interval_ns = forgets ? 0 : std::max<std::int64_t>(0, setting.interval_ns);
   timer->setting.is_date = setting.is_date;
@@ -156,9 +156,9 @@ void ProcessTimers::MoveDates(std::int64_t forward_ns, VirtualTime now) {
   for (auto& [id, timer] : timers_) {
     if (!timer.IsArmed() || !timer.setting.is_date) continue;
     std::int64_t& next_ns = timer.setting.next_ns;
-    // How long it is over tells how often it has run out.
+    // How long next_ns is over tells how often the timer has run out.
     next_ns = std::max(shm::AddSaturated(next_ns, -forward_ns), -shm::kFarNs);
-    if (next_ns == 0) next_ns = 1;  // which would say that it is not armed
+    if (next_ns == 0) next_ns = 1;  // 0 would say that the timer is not armed
     timer.rests = false;
     moves = true;
   }
@@ -239,7 +239,7 @@ std::vector<ProcessTimers::RanOut> ProcessTimers::ExpireCpu(const CpuUsed& used)
 void ProcessTimers::EndRests(VirtualTime now) {
   if (!std::exchange(has_resting_timers_, false)) return;
   for (auto& [id, timer] : timers_) timer.rests = false;
-  // What has run out meanwhile is made up now, and not on a core that is still behind.
+  // Expirations in the meantime are made up now, and not on a core that is still behind.
   FindNext(now);
 }
 
@@ -256,7 +256,7 @@ VirtualTime ProcessTimers::NextLook() const {
 void ProcessTimers::Signal(Id id, Timer& timer, std::int64_t count, pid_t computed) {
   if (timer.kind.signal == 0) return;
   if (timer.kind.is_posix == 0) {
-    // Such signals are not counted.
+    // Signals of timers other than timer_create's are not counted.
     const bool is_underway = std::ranges::any_of(signals_, [&](const TimerSignal& signal) {
       return signal.timer_id == 0 && signal.number == timer.kind.signal;
     });
@@ -299,7 +299,7 @@ void ProcessTimers::Accept(Id id, VirtualTime now) {
   Timer* timer = Find(id);
   if (timer == nullptr || !timer->is_signal_underway) return;
   if (timer->IsShort() && !timer->IsOnCpuTime()) {
-    // What runs out at this instant has a signal of its own.
+    // An expiration at this instant has a signal of its own.
     timer->AddOverruns(timer->TakeExpirations(OwnTimeOf(now, timer->lead).ns() - 1));
   }
   timer->Accept();

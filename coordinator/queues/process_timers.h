@@ -3,8 +3,8 @@
 //
 // A timer runs on the clock of its process, or on processor time, of the process or of one thread.
 // A caller sets and reads times of that clock. The instants of Expire, EndRests, NextExpiry and
-// NextLook are the virtual CPU's; the process's clock is ahead of it by what it was ahead (its
-// lead, --sync callback) when the timer was set.
+// NextLook are the virtual CPU's; the process's clock is ahead of it by the lead that the clock had
+// when the timer was set (--sync callback).
 //
 // - All timers that are due at an instant run out at once. A timer without an interval is then not
 //   armed any more; any other is set to its first time after the instant. The end of all time
@@ -15,11 +15,11 @@
 // - A short interval (shm::kShortIntervalNs) is not processed expiration by expiration. A thread
 //   that waits for such a timer is woken at its instant. But an expiration before the process has
 //   run again changes nothing that can be seen except a count: until then the timer rests, and the
-//   count is made up at once. While the process runs it is looked at now and then, for the sake of
-//   its signal.
+//   count is made up at once. While the process runs the timer is looked at now and then, for the
+//   sake of its signal.
 //
-// Pure: makes no system call. It returns which timers have run out and which signals are to be
-// sent. The caller tells it whether a signal was accepted. Not thread-safe.
+// Pure: makes no system call. The class returns which timers have run out and which signals are to
+// be sent. The caller tells it whether a signal was accepted. Not thread-safe.
 #pragma once
 
 #include <sys/types.h>
@@ -43,30 +43,31 @@ struct TimerSignal {
   pid_t tid = 0;              // 0: to the process
   std::int64_t timer_id = 0;  // 0: setitimer's
   std::int64_t value = 0, overruns = 0;
-  pid_t computed = 0;  // on processor time: the thread by which it has run out
-  pid_t taker = 0;     // the thread that will run its handler: sent at its next dispatch
+  pid_t computed = 0;  // on processor time: the thread by which the timer has run out
+  pid_t taker = 0;     // the thread that will run the handler: sent at its next dispatch
 };
 
 class ProcessTimers {
  public:
   using Id = std::int64_t;
-  // Beside setitimer's. Natively its limits (RLIMIT_SIGPENDING, RLIMIT_NOFILE) are about the same.
+  // Beside setitimer's. Natively the process's limits (RLIMIT_SIGPENDING, RLIMIT_NOFILE) are about
+  // the same.
   static constexpr std::size_t kMost = 16'384;
 
-  // Beside setitimer's, of the process itself: what it may compute until it is told so (SIGXCPU),
-  // and at all (SIGKILL). Programs have no number for them.
+  // Timers beside setitimer's, of the process itself: the time that it may compute until it is told
+  // so (SIGXCPU), and at all (SIGKILL). Programs have no number for these timers.
   static constexpr Id kCpuLimit = 3, kMostCpu = 4;
   static_assert(kMostCpu < shm::kFirstTimerId);
 
   struct Setting {
     std::int64_t next_ns = 0;  // 0: not armed
     std::int64_t interval_ns = 0;
-    bool is_date = false;  // next_ns: it moves when the date is set
+    bool is_date = false;  // next_ns moves when the date is set
   };
   struct RanOut {
     Id id;
     std::int64_t count;
-    std::optional<ProgramTime> shown;  // what its process's clock shows; none: it is on CPU time
+    std::optional<ProgramTime> shown;  // on its process's clock; none: it is on CPU time
     bool is_periodic;
   };
   // Processor time used, by the process and one of its threads.
@@ -86,7 +87,7 @@ class ProcessTimers {
   Id next_id() const { return next_id_; }
   // Must not be full.
   Id Create(const shm::TimerKind& kind);
-  // With its signal, unless that was sent.
+  // Deletes the timer with its signal, unless the signal was sent.
   void Delete(Id id);
   // The timers of timer_create, which end when the process executes another program.
   void DeletePosix();
@@ -107,42 +108,44 @@ class ProcessTimers {
   // The date has been set, so much forward, at `now`.
   void MoveDates(std::int64_t forward_ns, VirtualTime now);
 
-  // When the next one on the process's clock runs out.
+  // When the next timer on the process's clock runs out.
   VirtualTime NextExpiry() const { return next_expiry_; }
   // The owner of that value is told when it changes.
   void TellOfNextExpiry(std::function<void()> listener) { listener_ = std::move(listener); }
   std::vector<RanOut> Expire(VirtualTime now);
-  // Whether it is of a short interval and has run out by then: the caller that needs to see it
-  // calls Expire.
+  // Whether the timer is of a short interval and has run out by `now`: the caller that needs to see
+  // that calls Expire.
   bool IsBehind(Id id, VirtualTime now) const;
 
-  // On processor time: what may still be used before the next one runs out, at least 1 us, as what
-  // has run out already is found when the thread has run; none: any amount.
+  // The timers on processor time: the time that may still be used before the next one runs out;
+  // none: any amount. It is at least 1 us, as a timer that has run out already is found when the
+  // thread has run.
   bool HasCpuTimers() const { return has_cpu_timers_; }
   std::optional<VirtualDuration> CpuTimeToExpiry(const CpuUsed& used) const;
   std::vector<RanOut> ExpireCpu(const CpuUsed& used);
 
-  // A thread of the process has run until then: it may have read a timer, or handled its signal.
+  // A thread of the process has run until `now`, and may have read a timer, or handled its signal.
   void EndRests(VirtualTime now);
   // How far a thread of the process may run before the resting timers are looked at again.
   VirtualTime NextLook() const;
 
-  // Signals that are to be sent, in the order in which they came about: takes them all. Each is
-  // either sent or given back.
+  // Signals that are to be sent, in the order in which they came about: takes them all. The caller
+  // either sends a signal or gives it back.
   bool HasSignals() const { return !signals_.empty(); }
   std::vector<TimerSignal> TakeSignals();
   void GiveBack(const TimerSignal& signal) { signals_.push_back(signal); }
   void NoteSent(const TimerSignal& signal, pid_t to);
   // Of timer_create's timers: the signals that were sent and not yet seen accepted.
   std::vector<SentSignal> SentSignals() const;
-  // Seen at `now` to be accepted. What a short interval's timer has run out before, while nobody
-  // looked at it, belongs to the accepted signal.
+  // The signal was seen at `now` to be accepted. Earlier expirations of a short interval's timer,
+  // while nobody looked at it, belong to the accepted signal.
   void Accept(Id id, VirtualTime now);
-  // It did nothing, and nobody has accepted it: the overruns are those of the signal before.
+  // The signal did nothing, and no thread has accepted it: the overruns are those of the signal
+  // before.
   void Lost(Id id);
   // The same by the thread that has just accepted the signal: the expirations until now belong to
-  // the accepted signal. Where that one was seen accepted before the thread could say so, and the
-  // next one is pending already, that one is still to be accepted.
+  // the accepted signal. Where that signal was seen accepted before the thread could say so, and
+  // the next signal is pending already, the next signal is still to be accepted.
   void AcceptAt(Id id, VirtualTime now, bool is_pending);
   // The overruns of the signal that was accepted last.
   std::int64_t Overruns(Id id) const;
@@ -151,14 +154,14 @@ class ProcessTimers {
   struct Timer {
     shm::TimerKind kind;
     Setting setting;
-    VirtualDuration lead;             // of the process's clock when it was set
-    bool is_signal_underway = false;  // it was not seen accepted yet
+    VirtualDuration lead;             // of the process's clock when the timer was set
+    bool is_signal_underway = false;  // the signal was not seen accepted yet
     std::int64_t overruns = 0;        // of that signal
     std::int64_t accepted_overruns = 0;
-    bool was_seen_accepted = false;  // the last one, before its thread has said so
+    bool was_seen_accepted = false;  // the last signal, before its thread has said so
     pid_t sent_to = 0;
     bool rests = false;
-    std::int64_t seen_ns = 0;  // when it was last looked at, on its clock
+    std::int64_t seen_ns = 0;  // when the timer was last looked at, on its clock
 
     bool IsArmed() const { return setting.next_ns != 0; }
     bool IsOnCpuTime() const { return kind.clock != shm::TimerClock::kTime; }
@@ -170,7 +173,7 @@ class ProcessTimers {
     void Accept();
   };
 
-  // What its clock shows, none if that is another thread's.
+  // The time on the timer's clock, none if that is another thread's clock.
   static std::optional<VirtualDuration> CpuClockOf(const Timer& timer, const CpuUsed& used);
   const Timer* Find(Id id) const;
   Timer* Find(Id id);

@@ -1,7 +1,7 @@
 // Which threads wait for which kernel objects that cannot be polled (System V IPC, the backlog of a
 // listener): the kernel's wait queues. A thread that changes an object wakes all threads that wait
-// for it, in the order in which they came. Each tries again; if the change was not for it, it
-// returns to its place in the queue.
+// for it, in the order in which they came. Each woken thread tries again; if the change was not for
+// it, it returns to its place in the queue.
 //
 // Pure: makes no system call. Threads are numbers. Not thread-safe.
 #pragma once
@@ -24,12 +24,12 @@ class WaitQueues {
   // The thread, which waits nowhere yet, waits for the object: behind all others, or, if it is back
   // and its last wait was for the same object, where it was before.
   void Wait(Thread thread, const KernelObject& object, bool is_back);
-  // It waits no longer, and may come back. Nothing happens if it does not wait.
+  // The thread waits no longer, and may come back. Nothing happens if it does not wait.
   void Leave(Thread thread);
   // The thread has ended: the next thread with its number has no place in any queue.
   void Forget(Thread thread) { places_.erase(thread); }
 
-  // In the order in which they came.
+  // The waiting threads, in the order in which they came.
   std::vector<Thread> WaitersFor(const KernelObject& object) const;
   // The objects for which a thread waits, each once, ordered by the least number of its waiting
   // threads.

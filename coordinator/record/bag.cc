@@ -16,10 +16,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kLongestBatch_ns = 1'000'000'000;
-// What a storage adds to a message, about: a row, or a record's head, and its line in the index.
+// The bytes that a storage adds to a message, about: a row, or a record's head, and its line in the
+// index.
 constexpr std::size_t kRowBytes = 32;
 
-// The folder's own name: that of "out/bag/" is "bag".
+// The folder's own name: the name of "out/bag/" is "bag".
 std::string NameOf(const std::string& folder) {
   fs::path path = fs::path(folder).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
@@ -154,7 +155,7 @@ void Bag::WriteMetadata(Withstands what) {
   Note(WriteWhole(folder_ + "/metadata.yaml", MetadataFile(in_batches_), what));
 }
 
-// What the batch held is not in the bag, and nothing more will be.
+// The samples of the batch are not in the bag, and no more samples will be.
 void Bag::Note(const std::string& why) {
   if (why.empty() || !failure_.empty()) return;
   failure_ = why;

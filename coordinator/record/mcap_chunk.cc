@@ -10,7 +10,7 @@
 namespace tcs::record {
 namespace {
 
-// The level that costs the run least: on messages of numbers higher ones save a few per cent.
+// The level that costs the run least: on messages of numbers higher levels save a few per cent.
 constexpr int kLevel = 1;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // A chunk of an MCAP file: messages that are compressed together (zstd), after the definitions of
-// topics that they are the first of, and an index that says where each topic's messages are.
+// the topics whose first messages they are, and an index that says where each topic's messages are.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@ struct ZSTD_CCtx_s;
 
 namespace tcs::record {
 
-// What the file's summary says of a chunk. Offsets are of the file.
+// The entry of a chunk in the file's summary. Offsets are of the file.
 struct McapChunkIndex {
   std::uint64_t first_ns = 0, last_ns = 0;  // stamps; without messages both are 0
   std::uint64_t start = 0, length = 0;
-  std::map<std::uint16_t, std::uint64_t> message_indexes;  // where each channel's is
+  std::map<std::uint16_t, std::uint64_t> message_indexes;  // where each channel's index is
   std::uint64_t message_indexes_length = 0;
   std::string_view compression;  // a literal
   std::uint64_t compressed_size = 0, size = 0;
@@ -43,19 +43,20 @@ class McapChunk {
   void Clear();
 
   // Appends the chunk and its index to `out`, whose beginning is `file_offset` in the file, and
-  // clears it. `definitions` are whole records.
+  // clears the chunk. `definitions` are whole records.
   McapChunkIndex Finish(std::string_view definitions, std::uint64_t file_offset, std::string* out);
 
  private:
   struct FreeContext {
     void operator()(ZSTD_CCtx_s* context) const;
   };
-  // Into `packed_`; what it is called. Empty: it is not worth it, and `packed_` is `records`.
+  // Compresses into `packed_`, and returns the compression's name. Empty: compression is not worth
+  // it, and `packed_` is `records`.
   std::string_view Compress(std::string_view records);
 
   std::unique_ptr<ZSTD_CCtx_s, FreeContext> context_;
   std::string messages_;  // as records
-  // Of each channel: the stamps, and where the records begin in messages_.
+  // For each channel: the stamps, and where the records begin in messages_.
   std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> index_;
   std::uint64_t first_ns_ = 0, last_ns_ = 0;
   std::string packed_;  // memory of Finish

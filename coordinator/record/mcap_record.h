@@ -26,11 +26,11 @@ enum class McapCode : std::uint8_t {
   kDataEnd = 0x0F,
 };
 
-// Of a record, before its content.
+// The size of a record's head, before the content.
 inline constexpr std::size_t kMcapHeadBytes = 9;
 
-// A record that is being put together at the end of `out`, which outlives it and gets nothing else
-// meanwhile. It is whole when this ends.
+// A record that is being put together at the end of `out`, which outlives the object and gets
+// nothing else meanwhile. The record is whole when the object ends.
 class McapRecord {
  public:
   McapRecord(McapCode code, std::string* out);
@@ -46,7 +46,7 @@ class McapRecord {
   McapRecord& Bytes(std::span<const std::byte> bytes);
   McapRecord& Bytes(std::string_view bytes);
 
-  // What `fill` adds to the record, as a list or a map.
+  // A list or a map of what `fill` adds to the record.
   template <class Fill>
   McapRecord& List(Fill fill) {
     const std::size_t at = out_->size();
@@ -63,7 +63,7 @@ class McapRecord {
   std::size_t length_at_;
 };
 
-// Goes on from the checksum of what is before, which is 0 where nothing is.
+// Goes on from `before`, the checksum of the bytes before; it is 0 where there are none.
 std::uint32_t Crc32(std::uint32_t before, std::string_view bytes);
 
 }  // namespace tcs::record

@@ -39,7 +39,7 @@ std::string McapStorage::Append(std::string_view bytes) {
   return {};
 }
 
-// It is defined when the batch ends: until then its writers say what they offer.
+// The topic is defined when the batch ends: until then its writers say what they offer.
 std::string McapStorage::AddTopic(const BagTopic&, bool) {
   TCS_CHECK(sequence_.size() < UINT16_MAX);
   sequence_.push_back(0);
@@ -54,7 +54,8 @@ std::string McapStorage::Add(int topic, std::int64_t stamp_ns, std::span<const s
   return {};
 }
 
-// Schemas count from 1. One that tcs does not know has its name and no more, as rosbag2 does it.
+// Schemas count from 1. The schema of a type that tcs does not know has the type's name and no
+// more, as rosbag2 does it.
 std::uint16_t McapStorage::SchemaOf(const std::string& type, std::string* definitions) {
   const auto next = static_cast<std::uint16_t>(schema_of_.size() + 1);
   const auto [known, is_new] = schema_of_.try_emplace(type, next);

@@ -1,9 +1,9 @@
 // An MCAP file of the profile ros2: a batch is a chunk, with a checksum and an index; the file ends
-// with a summary. It holds the definitions of the messages, so that Foxglove, Lichtblick and
+// with a summary. The file holds the definitions of the messages, so that Foxglove, Lichtblick and
 // PlotJuggler open it with nothing installed, and rosbag2 as a bag.
 //
 // Each chunk is in the file, with its index, when its batch ends. Without a summary readers go
-// through the chunks. What a disk takes only half of is taken back.
+// through the chunks. A write of which the disk takes only a part is taken back.
 #pragma once
 
 #include <map>
@@ -20,7 +20,7 @@ class McapStorage final : public BagStorage {
  public:
   explicit McapStorage(dds::RosRelease release) : release_(release) {}
 
-  // As rosbag2 has it. Compressing it takes a millisecond.
+  // The size that rosbag2 has. Compressing a batch of this size takes a millisecond.
   std::size_t LargestBatch() const override { return 768 << 10; }
   std::span<const std::string_view> Companions() const override { return {}; }
   std::string Open(const std::string& path) override;
@@ -31,7 +31,7 @@ class McapStorage final : public BagStorage {
   std::string Close(const BagMetadata& metadata, bool is_whole) override;
 
  private:
-  // Appends it to the file, or nothing of it.
+  // Appends `bytes` to the file, or nothing of them.
   std::string Append(std::string_view bytes);
   // Records that define the topics of `metadata` that no chunk has defined yet.
   std::string DefineNewTopics(const BagMetadata& metadata);

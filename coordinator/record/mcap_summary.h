@@ -1,5 +1,5 @@
-// What an MCAP file ends with, so that readers need not go through all of it: the definitions once
-// more, numbers, and where each chunk is.
+// The end of an MCAP file, so that readers need not go through all of the file: the definitions
+// once more, numbers, and where each chunk is.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct McapSummary {
   std::span<const McapChunkIndex> chunks;
 };
 
-// From the end of the data to that of the file. The end of the data is at `file_offset`, `data_crc`
-// is the checksum of all before it.
+// The bytes from the end of the data to the end of the file. The end of the data is at
+// `file_offset`, `data_crc` is the checksum of all before it.
 std::string McapEnd(const McapSummary& summary, std::uint64_t file_offset, std::uint32_t data_crc);
 
 }  // namespace tcs::record

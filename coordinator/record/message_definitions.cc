@@ -52,7 +52,7 @@ std::string DefinitionOf(std::string_view type, dds::RosRelease release) {
   std::string text;
   std::set<std::string> written;
   if (message != nullptr) Append(*message, &written, &text);
-  // What Iron added.
+  // The field that Iron added.
   constexpr std::string_view kVariance = "float32 variance\n";
   if (name == "sensor_msgs/Range" && release == dds::RosRelease::kHumble) {
     text.erase(text.find(kVariance), kVariance.size());

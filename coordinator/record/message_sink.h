@@ -1,6 +1,6 @@
-// Where what is recorded goes that is on no topic of DDS: messages of ROS 2's types, as CDR.
+// The sink of recorded messages that are on no topic of DDS: messages of ROS 2's types, as CDR.
 //
-// Not thread-safe. Nothing here fails: what could not be written is said at the end.
+// Not thread-safe. Nothing here fails: the recording's end says what could not be written.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,8 @@ class MessageSink {
  public:
   virtual ~MessageSink() = default;
 
-  // For Write. A topic that is there already with that type is the same one.
+  // The topic's number, for WriteOwn. A topic that is there already with that type is the same
+  // topic.
   virtual int AddOwnTopic(std::string_view name, std::string_view type) = 0;
   virtual void WriteOwn(int topic, VirtualTime at, std::span<const std::byte> cdr) = 0;
   // Virtual CLOCK_REALTIME at that time, for stamps in messages.

@@ -5,7 +5,8 @@
 
 namespace tcs::record {
 
-// ROS 2's own recorder does not keep it either: played back, it would tell of nodes that are gone.
+// ROS 2's own recorder does not keep ros_discovery_info either: played back, the topic would tell
+// of nodes that are gone.
 bool Recording::Keeps(dds::TopicLog::Topic topic) const {
   return log_.reports()[topic].topic != dds::kDiscoveryTopic;
 }
@@ -20,8 +21,8 @@ Recording::Topic& Recording::At(dds::TopicLog::Topic topic, std::string_view typ
   return known;
 }
 
-// A reader that asks for no more than DDS's least suits every writer; of what a writer keeps for
-// late readers only one that asks for it hears.
+// A reader that asks for no more than DDS's least suits every writer; but only a reader that asks
+// for it gets what a writer keeps for late readers.
 void Recording::Opened(dds::TopicLog::Topic topic, int domain, const dds::Endpoint& endpoint) {
   if (!Keeps(topic)) return;
   const std::string hash = dds::TypeHashIn(endpoint.user_data);

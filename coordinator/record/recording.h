@@ -1,6 +1,6 @@
 // A recording of all topics of a run but ros_discovery_info: a bag, and a reader of each topic, so
-// that writers send what nobody else reads, too. And of what the run has to tell besides: where
-// bodies are, what goes over channels that are not on DDS.
+// that writers send what nobody else reads, too. The recording also has what the run tells besides:
+// where bodies are, what goes over channels that are not on DDS.
 #pragma once
 
 #include <cstdint>
@@ -30,10 +30,10 @@ class Recording final : public dds::TopicLog::Listener, public MessageSink {
 
   // Empty on success, else one sentence.
   [[nodiscard]] std::string Open(const std::string& folder) { return bag_.Open(folder); }
-  // What comes afterwards is no part of it.
+  // Samples that come afterwards are no part of the recording.
   [[nodiscard]] std::string Close() { return bag_.Close(); }
 
-  // Reads the topics that have come since it was called last; not from within the hub.
+  // Reads the topics that have come since the last call; not to be called from within the hub.
   void ReadNewTopics(std::int64_t now_ns);
 
   void Opened(dds::TopicLog::Topic topic, int domain, const dds::Endpoint& endpoint) override;

@@ -27,7 +27,7 @@ CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,
 CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 )";
 
-// In the words of the kernel, which the other messages of a full disk have.
+// The error in the words of the kernel, which the other messages of a full disk have.
 std::string Why(sqlite3* database) {
   if (sqlite3_errcode(database) == SQLITE_FULL) return strerror(ENOSPC);
   const int error = sqlite3_system_errno(database);
@@ -96,7 +96,8 @@ std::string SqliteStorage::AddTopic(const BagTopic& topic, bool is_new_type) {
   return failure_;
 }
 
-// Of one that tcs does not know too, as rosbag2 does it where it finds no definition.
+// A type that tcs does not know gets an entry, too, as rosbag2 does it where it finds no
+// definition.
 bool SqliteStorage::WriteDefinition(const BagTopic& topic) {
   const std::string definition = DefinitionOf(topic.type, release_);
   BindText(insert_definition_.get(), 1, topic.type);
@@ -150,7 +151,7 @@ std::string SqliteStorage::Close(const BagMetadata& metadata, bool is_whole) {
   for (Statement* one : {&insert_topic_, &update_topic_, &insert_definition_, &insert_message_}) {
     one->reset();
   }
-  // One file, as readers that may not write beside it want it.
+  // Leaves one file, as readers that may not write beside it want it.
   if (is_whole && failure_.empty()) Run("PRAGMA journal_mode = DELETE");
   Release();
   return failure_;

@@ -1,5 +1,5 @@
-// rosbag2's SQLite storage, in the form of ROS 2 Iron (schema 4): it has the definitions of the
-// messages that tcs knows, and Humble's readers, which want none, read it as well.
+// rosbag2's SQLite storage, in the form of ROS 2 Iron (schema 4): the storage has the definitions
+// of the messages that tcs knows, and Humble's readers, which want none, read it as well.
 //
 // SQLite's write-ahead log keeps the database whole, whatever ends the process (NAME_0.db3-wal,
 // beside it until Close).
@@ -37,7 +37,7 @@ class SqliteStorage final : public BagStorage {
   };
   using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
 
-  // Each is false, and `failure_` says why, once something went wrong.
+  // Each function is false, and `failure_` says why, once something went wrong.
   bool Run(const char* sql);
   bool Prepare(const char* sql, Statement* statement);
   bool Step(sqlite3_stmt* statement);

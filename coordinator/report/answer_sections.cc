@@ -14,7 +14,7 @@ namespace tcs::report {
 
 namespace {
 
-// Of the clients with a deadline: how many there are, and how many of their activations it was for.
+// How many clients have a deadline, how many have none, and how many activations were judged.
 struct Judged {
   std::int64_t clients = 0, without = 0, judged = 0;
 };
@@ -37,7 +37,7 @@ Judged JudgedIn(const Run& run) {
   return judged;
 }
 
-// Of a run in which nothing was worth a sentence.
+// The sentence for a run in which nothing was worth one.
 std::string AllClear(const Run& run) {
   if (!run.has_answers) {
     return "There is none: the run was made by an earlier version of tcs. Make it again to see "
@@ -82,7 +82,7 @@ std::string ExpectationsOf(const System& system) {
                      items.empty() ? "" : " Not as expected:", items);
 }
 
-// Of how many runs there is something to say.
+// Says of how many runs there is something to say.
 std::string OverRuns(const System& system) {
   const auto worth =
       std::ranges::count_if(system.runs, [](const Run& run) { return !run.verdict.empty(); });
@@ -92,7 +92,7 @@ std::string OverRuns(const System& system) {
 
 std::string Milliseconds(std::int64_t ns) { return Seconds(static_cast<double>(ns) * 1e-9); }
 
-// Of all runs together: sums, and the worst.
+// The figures of all runs together: sums, and the worst.
 struct InAll {
   std::int64_t deadline_ns = 0, judged = 0, missed = 0, count = 0;
   std::int64_t p99_ns = 0, max_ns = 0, age_count = 0, age_p99_ns = 0, age_max_ns = 0;

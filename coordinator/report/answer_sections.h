@@ -1,6 +1,6 @@
 // The answers, which a page begins with: the verdict, who was in time, and why the worst was late.
-// Of a system with several runs the verdict and the explanations are those of its first one, and
-// the tables are over all.
+// Of a system with several runs the verdict and the explanations are those of its first run, and
+// the tables are over all runs.
 #pragma once
 
 #include <optional>
@@ -13,13 +13,14 @@
 
 namespace tcs::report {
 
-// Its inner HTML: the verdict's sentences, or that all deadlines were met. Empty without systems.
+// The inner HTML of the verdict: its sentences, or that all deadlines were met. Empty without
+// systems.
 [[nodiscard]] std::string VerdictHtml(const Results& results);
 
 [[nodiscard]] std::optional<Section> InTimeSection(const Results& results);
 [[nodiscard]] std::optional<Section> ChainsSection(const Results& results);
 
-// What was told of a system's first run, or nothing.
+// A system, with what was told of its first run, or nothing.
 struct ToldOf {
   const System* system;
   std::optional<explain::Told> told;

@@ -10,14 +10,14 @@ class Axis {
  public:
   // From `low` to `high`, widened to whole ticks, at most about `ticks` of them.
   [[nodiscard]] static Axis Linear(double low, double high, int ticks);
-  // The same values and no more.
+  // From `low` to `high` and no further.
   [[nodiscard]] static Axis Exact(double low, double high, int ticks);
-  // Both above 0; widened to powers of ten.
+  // `low` and `high` are above 0; widened to powers of ten.
   [[nodiscard]] static Axis Decades(double low, double high);
-  // Both above 0; widened to 1, 2 or 5 times a power of ten.
+  // `low` and `high` are above 0; widened to 1, 2 or 5 times a power of ten.
   [[nodiscard]] static Axis Logarithmic(double low, double high);
 
-  // `low` is at `from`, `high` at `to`; either may be the greater.
+  // `low` is at `from`, `high` at `to`; `from` may be the greater one.
   void Place(double from, double to) { from_ = from, to_ = to; }
   [[nodiscard]] double Pixel(double value) const;
 
@@ -25,7 +25,7 @@ class Axis {
   double high() const { return high_; }
   bool is_logarithmic() const { return logarithmic_; }
   const std::vector<double>& ticks() const { return ticks_; }
-  // As the axis's other ticks are written: "0", "2.5", "0.001".
+  // The tick's label, written as those of the axis's other ticks: "0", "2.5", "0.001".
   [[nodiscard]] std::string Label(double tick) const;
 
  private:

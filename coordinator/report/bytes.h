@@ -9,7 +9,7 @@ namespace tcs::report {
 
 // Whole numbers in as few bytes as they need, seven bits each, the lowest first.
 void PutNumber(std::string* bytes, std::uint64_t value);
-// Those that may be negative, the sign in the lowest bit.
+// Whole numbers that may be negative, the sign in the lowest bit.
 void PutSigned(std::string* bytes, std::int64_t value);
 
 [[nodiscard]] std::string Base64(const std::string& bytes);

@@ -13,7 +13,7 @@ namespace tcs::report {
 
 namespace {
 
-// Of all systems, by name; the value: is it periodic?
+// The clients of all systems, by name; the value: is the client periodic?
 std::map<std::string, bool> Clients(const Results& results) {
   std::map<std::string, bool> clients;
   for (const System& system : results.systems) {

@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Point = ContactTrack::Point;
 
-// As of tracks: 16 bits over what a number ranges over, but no finer than anybody sees.
+// A number has 16 bits over its range, as in tracks, but is no finer than anybody sees.
 constexpr double kStepsOfTrack = 65'535, kLeastStepM = 1e-4, kLeastStepN = 1e-3;
 constexpr std::size_t kNumbers = 6;
 constexpr std::size_t kMostStride = 1 << 16;
@@ -34,7 +34,8 @@ void AddTo(Point* sum, const Point& more) {
   sum->weight_n = weight_n;
 }
 
-// That of the pair at the moment that comes last among `points`; null where there is none.
+// The point of the wanted pair at the wanted moment, which comes last among `points`; null where
+// there is none.
 Point* PointOf(std::vector<Point>* points, const Point& wanted) {
   for (auto point = points->rbegin(); point != points->rend() && point->moment == wanted.moment;
        ++point) {

@@ -18,20 +18,20 @@ class ContactTrack {
     std::size_t pair = 0;
     std::array<double, 3> point_m{};  // in the world
     std::array<double, 3> force_n{};  // on the first of the two
-    double weight_n = 0;              // of the point, among those that it is the mean of
+    double weight_n = 0;              // the point's weight in a mean
   };
   // Names as in contacts.csv.
   struct Pair {
     std::string first, second;
-    bool second_moves = false;  // it feels the opposite
+    bool second_moves = false;  // the second one feels the opposite force
   };
 
-  // How many points there may be. One more, and all become coarser: first each two things have one
-  // force, the sum, where its parts are in the mean; then every second moment has those of the one
-  // before.
+  // How many points there may be. With one more all become coarser: first each two things have one
+  // force, the sum, at the mean place of its parts; then every second moment has the contacts of
+  // the moment before.
   explicit ContactTrack(std::size_t most_points = 100'000) : most_points_(most_points) {}
 
-  // Moments come in their order; one of a moment that is past is left out.
+  // Moments come in their order; a contact of a moment that is past is left out.
   void Add(std::size_t moment, const Pair& pair, const std::array<double, 3>& point_m,
            const std::array<double, 3>& force_n);
   // Every second moment of the replay is left out.
@@ -39,11 +39,11 @@ class ContactTrack {
 
   const std::vector<Pair>& pairs() const { return pairs_; }
   const std::vector<Point>& points() const { return points_; }  // by moment
-  // What is shown at a moment is that of the last one before it whose number this divides.
+  // A moment shows the contacts of the last moment before it whose number the stride divides.
   std::size_t stride() const { return stride_; }
   bool has_sums() const { return has_sums_; }
 
-  // Those of the moments from `begin` to before `end`, counted from there.
+  // The contacts of the moments from `begin` to before `end`, with moments counted from `begin`.
   ContactTrack Part(std::size_t begin, std::size_t end) const;
 
  private:

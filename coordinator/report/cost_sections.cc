@@ -1,4 +1,4 @@
-// What keeping time together costs: Δ, staleness, and who had the processor.
+// The costs of keeping time together: Δ, staleness, and who had the processor.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace tcs::report {
 
 namespace {
 
-// All in one unit, to be compared.
+// All times are in one unit, to be compared.
 std::string InSeconds(double seconds) { return WithUnit(fmt::format("{:.2f}", seconds), "s"); }
 
 void AddPaper(Table* table) {
@@ -32,7 +32,7 @@ void AddPaper(Table* table) {
 
 constexpr std::size_t kMostShares = 8;
 
-// Of its time, what each row ran; of many rows those that ran most.
+// The share of the timeline that each row ran; of many rows the shares of those that ran most.
 std::string Shares(const Timeline& timeline) {
   std::vector<std::int64_t> ran(timeline.rows.size());
   for (const Slice& slice : timeline.slices)
@@ -59,7 +59,7 @@ std::string Shares(const Timeline& timeline) {
   return Listed(shares);
 }
 
-// `is_only`: there is no other one to tell it from.
+// `is_only`: there is no other timeline to tell this one from.
 std::string AboutTimeline(const Timeline& timeline, bool is_only) {
   const std::string of = is_only ? "" : Quoted(timeline.name) + ": ";
   const double virtual_s = static_cast<double>(timeline.virtual_end) * 1e-6;

@@ -16,20 +16,20 @@ namespace tcs::report {
 
 class CsvTail {
  public:
-  // What became of a line. One that is left for later comes again, first, at the next look, and
-  // those behind it after it.
+  // The fate of a line. A line that is left for later comes again, first, at the next look, and the
+  // lines behind it come after it.
   enum class Taken { kYes, kLater };
   enum class Found {
     kMore,     // or nothing
-    kReplaced  // it is another file than before, or none any more
+    kReplaced  // the file is another one than before, or gone
   };
 
-  // The columns as in ReadCsv; of these the first `needed` have to be there, and lines have those
-  // fields alone if one of the others is not.
+  // The columns as in ReadCsv; the first `needed` columns have to be there, and lines have only
+  // those fields if another column is not there.
   CsvTail(std::string path, std::vector<std::string_view> columns, std::size_t needed);
 
-  // Calls `take` for each whole line that has come since the last look. There may be no file yet.
-  // One without these columns has no lines. Reads so much at once at most; the rest comes next
+  // Calls `take` for each whole line that has come since the last look. There may be no file yet. A
+  // file without these columns has no lines. Reads a limited amount at once; the rest comes next
   // time.
   Found Look(const std::function<Taken(const CsvFields&)>& take);
 

@@ -15,7 +15,7 @@ namespace tcs::report {
 
 namespace {
 
-// Of those that have any distance.
+// The panels of the systems that have any distance.
 std::vector<TracksPanel> PanelsOf(const Results& results) {
   std::vector<TracksPanel> panels;
   for (std::size_t i = 0; i < results.systems.size(); ++i) {

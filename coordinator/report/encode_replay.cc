@@ -1,8 +1,8 @@
 // How a replay is written into the page; page/replay_data.js reads it.
 //
-// A number becomes a whole one by an offset and a step, which are those of its track or signal:
-// 16 bits over what it ranges over, but steps of a micrometre at the least. Then each is the
-// difference to the one before, in as few bytes as that needs.
+// A number becomes a whole one by an offset and a step, which are those of its track or signal: 16
+// bits over the number's range, but steps of a micrometre at the least. Then each number is written
+// as the difference to the one before, in as few bytes as that needs.
 #include <algorithm>
 #include <cmath>
 #include <span>

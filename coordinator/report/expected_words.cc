@@ -11,13 +11,13 @@ namespace tcs::report {
 
 namespace {
 
-// Of one expectation, over all runs.
+// The tally of one expectation, over all runs.
 struct Tally {
   std::int64_t held = 0, runs = 0;
-  std::string first_not;  // what came of it in the first run in which it did not hold
+  std::string first_not;  // the outcome in the first run in which the expectation did not hold
 };
 
-// In the scenario's order.
+// The tallies, in the scenario's order.
 std::vector<std::pair<std::string, Tally>> TalliesOf(const System& system) {
   std::vector<std::pair<std::string, Tally>> all;
   std::map<std::pair<std::string, std::string>, std::size_t> places;

@@ -11,7 +11,8 @@ namespace tcs::report {
 // How many expectations hold; of several runs, in all of them. Empty: nothing is expected.
 [[nodiscard]] std::string ExpectedSentence(const System& system);
 
-// Of each that does not hold: what came of it, and in how many of several runs it held.
+// A sentence for each expectation that does not hold: its outcome, and in how many of several runs
+// it held.
 [[nodiscard]] std::vector<std::string> NotAsExpected(const System& system);
 
 }  // namespace tcs::report

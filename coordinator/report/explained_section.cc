@@ -1,4 +1,4 @@
-// Why the worst was late: what `tcsim explain` says of it.
+// Why the worst was late, as `tcsim explain` says it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ std::string Item(const std::string& sentence, const std::string& more, const std
   return fmt::format("<li><p>{}. {}</p>\n{}</li>\n", Escaped(sentence), more, parts);
 }
 
-// Of one of `all`.
+// The item of one activation of `all`.
 std::string ActivationItem(const explain::Told& told,
                            const std::vector<const explain::Activation*>& all,
                            const explain::Activation& one) {

@@ -11,7 +11,7 @@ namespace tcs::report {
 
 namespace {
 
-// The text alternative: what it is, and what it shows.
+// The text alternative: what the figure is, and what it shows.
 std::string Described(const Figure& figure, const std::string& variant) {
   return fmt::format("<title id=\"{0}-{1}-title\">{2}</title><desc id=\"{0}-{1}-desc\">{3}</desc>",
                      figure.id, variant, Escaped(figure.title), Escaped(figure.sentence));

@@ -18,13 +18,13 @@ struct HistogramPanel {
 struct HistogramPlot {
   std::string x_title;  // with its unit
   std::string unit;
-  std::string what;  // one value is
+  std::string what;  // what one value is
   std::vector<double> marks;
   std::vector<HistogramPanel> panels;  // at least one has values
 };
 
-// The shares of the values in percent, in bins of `bin_width` of the axis, which lies in the frame;
-// the axis beside it, too.
+// Draws the shares of the values in percent, in bins of `bin_width` of the axis, which lies in the
+// frame; draws the axis beside the frame, too.
 void DrawHistogram(Svg* svg, const Frame& frame, const Axis& x, const std::vector<double>& values,
                    double bin_width, int colour);
 

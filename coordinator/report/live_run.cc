@@ -20,11 +20,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What a page is given at once is no more than this.
+// The most that a page is given at once.
 constexpr std::size_t kMostLiveBytes = 4'000'000, kMostLiveSlices = 80'000, kLeastMoments = 500,
                       kMostMoments = 100'000;
 
-// Of so many bytes each.
+// How many moments a page is given, by the bytes that each moment takes.
 std::size_t MostMoments(const ReplayScene& scene) {
   const double interval_s = IntervalOf(scene, 1e9, kMostLiveBytes);
   return std::clamp(static_cast<std::size_t>(1e9 / interval_s), kLeastMoments, kMostMoments);
@@ -62,7 +62,7 @@ struct LiveRun::Reading {
   // How coarse contacts were at the last look: whether there were sums alone, at which moments.
   std::pair<bool, std::size_t> contacts_were{false, 1};
 
-  // Reads on. What belongs to moments that are not there yet waits for them.
+  // Reads on. Lines of moments that are not there yet wait for these moments.
   CsvTail::Found Look() {
     released = replay.time_s.size();
     const auto found = bodies.Look([this](const CsvFields& fields) {
@@ -98,7 +98,7 @@ struct LiveRun::Reading {
     return found;
   }
 
-  // True if there was too much.
+  // True if there was too much, so that something was made coarser.
   bool MadeCoarser() {
     bool is_coarser =
         contacts_were != std::pair(replay.contacts.has_sums(), replay.contacts.stride());
@@ -142,7 +142,7 @@ struct LiveRun::Reading {
     return part;
   }
 
-  // Each moment without a value has that of the one before.
+  // A moment without a value has the value of the moment before.
   void AddPart(const Signal& signal, std::size_t moment, Replay* part) const {
     const auto at = [&signal](std::size_t i) {
       return i < signal.values.size() ? signal.values[i] : std::nan("");

@@ -1,5 +1,5 @@
-// What a run that goes on has done so far, and what of it is new: read from the tables that it
-// writes, each line once.
+// The state of a run that goes on, and its news: read from the tables that the run writes, each
+// line once.
 //
 // Not thread-safe.
 #pragma once
@@ -14,8 +14,8 @@ namespace tcs::report {
 
 class LiveRun {
  public:
-  // How much of it somebody has. Of another generation it is all of no use: another run has begun
-  // in the folder, or there was too much of this one, and it was made coarser.
+  // How much of the run somebody has. A place of another generation is of no use: another run has
+  // begun in the folder, or there was too much of this run, and it was made coarser.
   struct Place {
     std::uint64_t generation = 0;
     std::size_t moments = 0, said = 0, slices = 0;
@@ -27,16 +27,17 @@ class LiveRun {
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
 
-  // Reads what has come since. What the tables say of a moment is there at the second look after it
-  // was written: they are written one after the other.
+  // Reads the lines that have come since the last look. A moment is complete at the second look
+  // after it was written: the tables are written one after the other.
   void Look();
 
   bool HasMoments() const;
-  // How far it has come, in virtual seconds.
+  // How far the run has come, in virtual seconds.
   double LastS() const;
   Place place() const;
-  // What is new since `from`: {generation, replay, timeline}, each as the page's scripts decode
-  // them, with the numbers of what they begin with; everything if `from` is of no use.
+  // The news since `from`: {generation, replay, timeline}, each as the page's scripts decode them,
+  // with the numbers of the moments, lines and slices that the news begin with; everything if
+  // `from` is of no use.
   nlohmann::ordered_json NewsSince(const Place& from) const;
 
  private:

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 // A triangle takes some 10 bytes with its share of the vertices.
 constexpr std::size_t kMostTriangles = 60'000, kMostOfOne = 6'000, kMostFiles = 60;
 
-// 16 bits over what it spans, a micrometre at the least.
+// A coordinate has 16 bits over the mesh's span, in steps of a micrometre at the least.
 constexpr double kStepsOfLooks = 65'535, kLeastLookM = 1e-6;
 
 Json MeshJson(const Surface& surface) {

@@ -15,7 +15,7 @@ namespace tcs::report {
 
 namespace {
 
-constexpr std::size_t kMostChosen = 3;   // figures without a wish
+constexpr std::size_t kMostChosen = 3;   // figures that nobody asked for
 constexpr std::size_t kMostPanels = 12;  // of one figure
 
 template <class Take>
@@ -35,7 +35,7 @@ std::vector<std::string> MeasureNames(const std::vector<Varied>& all) {
   return {names.begin(), names.end()};
 }
 
-// Those whose values are the greatest in sum, of all that end so.
+// The measures whose values are the greatest in sum, of all whose names end with `ending`.
 std::vector<std::string> Greatest(const std::vector<Varied>& all, std::string_view ending,
                                   bool with_deadline) {
   std::map<std::string, double> sums;
@@ -58,7 +58,8 @@ std::vector<std::string> Greatest(const std::vector<Varied>& all, std::string_vi
   return names;
 }
 
-// Who was late, if anybody was; else the slowest of those who must not be, or of all.
+// The missed deadlines, if any were missed; else the slowest response of those with a deadline, or
+// of all.
 std::vector<std::string> ChosenMeasures(const std::vector<Varied>& all) {
   std::vector<std::string> names = Greatest(all, ".missed", true);
   if (!names.empty()) return names;
@@ -77,7 +78,7 @@ std::vector<std::string> ChosenKeys(const std::vector<Varied>& all) {
   return keys;
 }
 
-// One measure against one key.
+// Makes the plot of one measure against one key.
 class PlotMaker {
  public:
   PlotMaker(const std::vector<Varied>& all, std::string measure, std::string against) {
@@ -184,7 +185,7 @@ class PlotMaker {
     return data_.panels.emplace_back(MeasurePanel{title, {}});
   }
 
-  // The same name has the same colour in all panels.
+  // A name has the same colour in all panels.
   MeasureCurve& CurveIn(MeasurePanel& panel, const std::string& name) {
     for (MeasureCurve& curve : panel.curves) {
       if (curve.name == name) return curve;
@@ -198,7 +199,7 @@ class PlotMaker {
   MeasurePlotData data_;
   std::vector<std::pair<const Varied*, std::size_t>> shown_;  // and the place of the key
   std::vector<std::string> places_;                           // values of the key
-  std::vector<std::string> curves_;                           // their names
+  std::vector<std::string> curves_;                           // the names of the curves
   std::optional<double> deadline_;
   bool has_one_deadline_ = true;
 };

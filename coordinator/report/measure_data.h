@@ -12,7 +12,7 @@
 
 namespace tcs::report {
 
-// What a user asked for; empty where tcs is to choose.
+// A user's request; empty where tcs is to choose.
 struct MeasureRequest {
   std::vector<std::string> measures;
   std::string against;
@@ -40,8 +40,8 @@ struct MeasurePlotData {
   std::string measure, against;
   MeasureUnit unit = MeasureUnit::kNumber;
   bool is_numeric = true;  // else values are places, in their order
-  std::string curves_are;  // what the names of curves are values of: a key; empty
-  // All values that were tried, also where no trial has the measure: what is missing is to be seen.
+  std::string curves_are;  // the key that the names of curves are values of, or empty
+  // All values that were tried, also where no trial has the measure: a missing value is to be seen.
   std::vector<std::pair<double, std::string>> tried;
   std::vector<MeasurePanel> panels;
   std::size_t left_out = 0;        // panels beyond what can be shown
@@ -49,9 +49,9 @@ struct MeasurePlotData {
   std::optional<double> deadline;  // of response times, if all trials had the same
 };
 
-// One for each measure asked for, or chosen: shares of missed deadlines of those who missed most,
-// else the greatest response times; against the key asked for, or else each sweep's, and of a grid
-// the processor's speed or the key with the most values. Empty where nothing was varied.
+// A plot for each measure asked for, or chosen: the greatest shares of missed deadlines, else the
+// greatest response times; against the key asked for, or else each sweep's key, and for a grid the
+// processor's speed or the key with the most values. Empty where nothing was varied.
 [[nodiscard]] std::vector<MeasurePlotData> MeasurePlots(const Results& results,
                                                         const MeasureRequest& request);
 

@@ -24,7 +24,7 @@ constexpr double kPanelGap = 16, kMeasureEdge = 12, kMeasureTitle = 22, kPanelTi
 constexpr double kFactorOfLogarithm = 100;
 constexpr std::size_t kPanelColumns = 3;
 
-// What values are divided by to be in a unit that reads well, and the unit.
+// The divisor that brings values into a unit that reads well, and the unit.
 struct MeasureScale {
   double divisor = 1;
   std::string unit;
@@ -143,7 +143,7 @@ class MeasureDrawing {
     }
     const bool grows_by_factors = data_.is_numeric && IsGeometric(ats_);
     Axis axis = grows_by_factors ? Axis::Logarithmic(*least, *most) : Axis::Exact(*least, *most, 5);
-    // Only as far as there are values, with room for their marks.
+    // The axis goes only as far as there are values, with room for their marks.
     axis.Place(0, 1);
     const double from = axis.Pixel(*least), to = axis.Pixel(*most);
     const double pixels = (frame.right - frame.left - 2 * kMeasureRoom) / (to - from);
@@ -152,7 +152,7 @@ class MeasureDrawing {
     return axis;
   }
 
-  // In as many lines as it needs; returns how high it is.
+  // Draws the legend in as many lines as it needs; returns its height.
   double DrawLegend(double top) {
     std::vector<std::pair<std::string, int>> names;
     for (const MeasurePanel& panel : data_.panels) {

@@ -15,7 +15,7 @@ namespace tcs::report {
 struct MeasureSpread {
   double low = 0, median = 0, high = 0;  // 10 %, 50 % and 90 %
 };
-// Of at least one value.
+// The spread of at least one value.
 [[nodiscard]] MeasureSpread MeasureSpreadOf(std::vector<double> values);
 
 }  // namespace tcs::report

@@ -22,7 +22,7 @@ double MedianOf(const MeasurePoint& point) { return MeasureSpreadOf(point.values
 
 // "missed deadlines of r/planner", with a large letter.
 std::string Headed(std::string text) {
-  // Of a metric it is its name, which stays as it is.
+  // The words for a metric are its name, which stays as it is.
   const std::size_t of = text.find(" of ");
   if (of != std::string::npos && text[0] >= 'a' && text[0] <= 'z') {
     text[0] = static_cast<char>(text[0] - 'a' + 'A');
@@ -30,7 +30,7 @@ std::string Headed(std::string text) {
   return text;
 }
 
-// The least value from which on all medians are 0; empty if the last is not.
+// The least value from which on all medians are 0; empty if the last median is not 0.
 std::string FreeFrom(const MeasureCurve& curve) {
   std::string label;
   for (auto point = curve.points.rbegin(); point != curve.points.rend(); ++point) {
@@ -66,7 +66,7 @@ std::string AboutCurve(const MeasurePlotData& data, const MeasurePanel& panel,
   return of.empty() ? text : of + ": " + text;
 }
 
-// Of many curves the extremes.
+// Tells the extremes of many curves.
 std::string AboutMany(const MeasurePlotData& data, std::size_t curves) {
   struct Extreme {
     double value = 0;

@@ -12,7 +12,7 @@ namespace tcs::report {
 
 namespace {
 
-// What stands behind the last dot, in words.
+// The part of a measure's name behind the last dot, in words.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kMeasureWords = {{
     {"missed", "missed deadlines"},
     {"misses", "missed deadlines"},

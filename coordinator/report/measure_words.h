@@ -7,8 +7,8 @@
 
 namespace tcs::report {
 
-// "missed deadlines of r/planner", "response time (p99) of r/planner"; of a name of one's own, the
-// name.
+// "missed deadlines of r/planner", "response time (p99) of r/planner"; for a name of the user's
+// own, the name.
 [[nodiscard]] std::string MeasureWords(const std::string& measure);
 
 // "12.5 ms", "3.1 %", "17".

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kPieces = 400;
 
-// Of a piece of the time.
+// The extreme values in a piece of the time.
 struct PieceOfCurve {
   std::pair<double, double> least, greatest;  // s, and the value
   bool has_any = false;
@@ -37,7 +37,7 @@ std::map<std::string, MetricFigure> ReadMetricFigures(const std::string& folder)
   std::map<std::string, MetricFigure> figures;
   const std::optional<std::string> text = ReadFile(folder + "/summary.json");
   if (!text) return figures;
-  // Who reads the run says what is wrong with the file.
+  // The code that reads the run says what is wrong with the file.
   const auto json = nlohmann::json::parse(*text, nullptr, false);
   if (!json.is_object() || !json.contains("metrics") || !json["metrics"].is_object()) {
     return figures;
@@ -72,7 +72,7 @@ std::map<std::string, MetricCurve> ReadMetricCurves(
     const auto time_ns = ToInteger(fields[1]);
     const auto value = ToReal(fields[2]);
     if (!time_ns || !value) return false;
-    // Of several sources of one name each has its own.
+    // If several sources have a metric of one name, each metric is named with its source.
     std::string name(fields[0]);
     const auto known = metrics.find(name);
     if (known == metrics.end() || known->second.from != fields[3]) {

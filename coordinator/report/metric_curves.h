@@ -10,11 +10,12 @@
 
 namespace tcs::report {
 
-// What a run says that a metric came to; none where it had no values, or says nothing of it.
+// The figure that a run gives for a metric; none where the metric had no values, or the run says
+// nothing of it.
 struct MetricFigure {
   std::string from;             // ROBOT/CLIENT, or "scenario"
   std::string asked;            // the figure that counts: the scenario's, else "mean"
-  std::optional<double> value;  // of that; of first_time_when seconds
+  std::optional<double> value;  // of that figure; of first_time_when seconds
   std::int64_t count = 0;
 };
 
@@ -23,11 +24,11 @@ struct MetricCurve {
   std::vector<std::pair<double, double>> points;  // s, and the value
 };
 
-// By the metrics' names; of a folder without any, none.
+// The figures by the metrics' names; empty for a folder without metrics.
 [[nodiscard]] std::map<std::string, MetricFigure> ReadMetricFigures(const std::string& folder);
 
-// The same names. The run goes from 0 to `end_s`, which is cut into a few hundred pieces: of each
-// the least and the greatest value are there.
+// The curves, by the same names. The run goes from 0 to `end_s`, which is cut into a few hundred
+// pieces: each piece has its least and its greatest value.
 [[nodiscard]] std::map<std::string, MetricCurve> ReadMetricCurves(
     const std::string& folder, double end_s, const std::map<std::string, MetricFigure>& metrics);
 

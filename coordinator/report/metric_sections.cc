@@ -46,7 +46,7 @@ std::vector<CurvesOfSystem> CurvesOf(const Results& results) {
   return all;
 }
 
-// Values of one metric, of all systems, so that they can be compared.
+// The axis for the values of one metric, of all systems, so that these can be compared.
 Axis AxisOf(const std::vector<CurvesOfSystem>& all, const std::string& name) {
   bool has_any = false;
   double least = 0, most = 0;
@@ -97,7 +97,7 @@ Drawing DrawMetrics(const std::vector<CurvesOfSystem>& all, const std::vector<st
     }
     svg.Line(frame.left, frame.bottom, frame.right, frame.bottom, "axis");
   }
-  // Whose line is whose, beside the first name.
+  // The names of the systems say which line is whose, beside the first name.
   double at = right;
   for (std::size_t i = all.size(); i-- > 0 && all.size() > 1;) {
     svg.Text(at, kMetricsTop + kMetricsName - 8, Svg::Anchor::kEnd, all[i].system->name,

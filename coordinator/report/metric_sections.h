@@ -1,4 +1,4 @@
-// Figures of one's own: what programs print as metrics, and what scenarios name.
+// Figures of the user's own: metrics that programs print, and metrics that scenarios name.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace tcs::report {
 // Each metric over time, of each system's first run. None where there are no metrics.
 [[nodiscard]] std::optional<Figure> MetricsOverTime(const Results& results);
 
-// What each metric came to, over all runs of a system.
+// The result of each metric, over all runs of a system.
 [[nodiscard]] std::optional<Section> MetricsSection(const Results& results);
 
 }  // namespace tcs::report

@@ -9,7 +9,7 @@ namespace tcs::report {
 
 namespace {
 
-// About 250 bytes of the page each; a mark alone, 20.
+// A miss takes about 250 bytes of the page; a mark alone, 20.
 constexpr std::size_t kMostExplained = 1'500, kMostMarked = 50'000;
 
 }  // namespace

@@ -6,7 +6,8 @@
 
 namespace tcs::report {
 
-// In the order of their deadlines. The later ones of very many go without sentence and parts.
+// Adds the misses in the order of their deadlines. Of very many misses the later ones go without
+// sentence and parts.
 void AddMisses(const explain::Told& told, Timeline* timeline);
 
 }  // namespace tcs::report

@@ -1,4 +1,4 @@
-// What the runs of a system have in common, as one number.
+// Figures of all runs of a system together, as one number.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace tcs::report {
   return static_cast<double>(most) * 1e-9;
 }
 
-// Of the real time of all runs together.
+// The coordinator's share of the real time of all runs together.
 [[nodiscard]] inline double OverheadOf(const System& system) {
   const double real = MeanOf(system, &Run::real_ns);
   return real > 0 ? MeanOf(system, &Run::coordinating_ns) / real : 0;

@@ -22,9 +22,9 @@ namespace tcs::report {
 
 namespace {
 
-// Of all timelines together: about 11 bytes of the page each.
+// The most slices of all timelines together: about 11 bytes of the page each.
 constexpr std::size_t kMostSlices = 200'000;
-// Of all replays together, before they become text, which is a third longer.
+// The most bytes of all replays together, before they become text, which is a third longer.
 constexpr std::size_t kMostReplayBytes = 5'000'000;
 
 std::string Paragraph(std::string_view classes, const std::string& text) {
@@ -40,7 +40,7 @@ class Builder {
   }
 
   Page Build() {
-    // The answer first, then what happened, then why; what the simulation did is nobody's robot.
+    // The answer first, then what happened, then why; what the simulation did itself is no robot's.
     ReadTold();
     AddVerdict();
     AddFirst(InTimeSection(results_), "in-time");
@@ -67,7 +67,7 @@ class Builder {
   }
 
  private:
-  // One part of the page, which the table of contents names.
+  // Adds a part of the page, which the table of contents names.
   void AddHtml(std::string_view id, const std::string& heading, const std::string& inner,
                std::string_view classes = "") {
     contents_ += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, Escaped(heading));
@@ -79,7 +79,7 @@ class Builder {
     if (!section) return;
     AddHtml(id, section->heading, Paragraph("says", section->sentence) + section->html);
   }
-  // One that a terminal shows, too.
+  // Adds a section that a terminal shows, too.
   void AddFirst(const std::optional<Section>& section, const std::string& id) {
     Add(section, id);
     if (section) AddText(section->heading, section->text);
@@ -103,7 +103,7 @@ class Builder {
     page_.svgs.emplace_back(figure.id, StandaloneSvg(figure));
   }
 
-  // Of each system's first run.
+  // Reads what each system's first run has told.
   void ReadTold() {
     for (const System& system : results_.systems) {
       ToldOf& of = told_.emplace_back(ToldOf{&system, {}});
@@ -143,7 +143,7 @@ class Builder {
                 html);
   }
 
-  // What the runs warned of while they went.
+  // Adds the warnings that the runs gave while they went.
   void AddWarnings() {
     std::string items;
     for (const System& system : results_.systems) {
@@ -210,7 +210,7 @@ class Builder {
     for (const System& system : results_.systems) {
       auto read = ReadTimeline(system.runs.front().folder, system.name);
       if (auto* timeline = std::get_if<Timeline>(&read)) {
-        // Of a run in which nothing happens at its end, too, all of its time is shown.
+        // All of a run's time is shown, also if nothing happens at its end.
         timeline->virtual_end =
             std::max(timeline->virtual_end, system.runs.front().virtual_ns / 1000);
         const auto of = std::ranges::find(told_, &system, &ToldOf::system);
@@ -232,7 +232,7 @@ class Builder {
     AddFigure(*figure, more);
   }
 
-  // What is missing is said on the page, too.
+  // The page names what is missing, too.
   void AddFailures() {
     std::string items;
     const auto add = [&](const System& system) {

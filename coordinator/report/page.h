@@ -18,10 +18,10 @@ struct PageOptions {
 
 struct Page {
   std::string html;
-  std::string text;  // its first tables, for a terminal
+  std::string text;  // the page's first tables, for a terminal
   // The figures by themselves, by file name without its extension.
   std::vector<std::pair<std::string, std::string>> svgs;
-  std::vector<std::string> warnings;  // one sentence each; those of the results among them
+  std::vector<std::string> warnings;  // one sentence each; the results' warnings are among them
 };
 
 [[nodiscard]] Page MakePage(const Results& results, const PageOptions& options);

@@ -12,7 +12,7 @@ extern const std::string_view kPathsLive;
 extern const std::string_view kMotionControls;
 extern const std::string_view kThreeJs;
 extern const std::string_view kReplayDataJs;
-// Of a run that goes on.
+// The parts for a run that goes on.
 extern const std::string_view kLiveHtml;
 extern const std::string_view kLiveJs;
 // All other scripts of any page, in the order in which they run.

@@ -1,6 +1,6 @@
-// What the paper reports of its own systems, for comparison: Taylor, Drumwright, Parmer,
+// The values that the paper reports of its own systems, for comparison: Taylor, Drumwright, Parmer,
 // "Making Time Make Sense in Robotic Simulation", section 4.2, trials of 20 s of simulated time.
-// Only reports on that scenario show them.
+// Only reports on that scenario show these values.
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,7 @@ namespace tcs::report::paper {
 
 inline constexpr std::string_view kScenario = "predator_prey";  // how its scenarios' names begin
 
-// As the paper writes them; empty where it does not say.
+// The values as the paper writes them; empty where the paper does not say.
 struct Values {
   std::string_view system, virtual_time, drift, coordinating, clients, dynamics, overhead;
 };

@@ -91,7 +91,7 @@ class View {
   Axis x_, y_;
 };
 
-// Those that have somewhere been and somewhere else as well.
+// The robots that have been at more than one place.
 std::vector<std::size_t> Moving(const Replay& replay) {
   std::vector<std::size_t> moving;
   for (std::size_t i = 0; i < replay.robots.size() && moving.size() < kMostRobots; ++i) {

@@ -9,7 +9,7 @@ namespace tcs::report {
 
 // The replay has moments.
 [[nodiscard]] Drawing DrawPaths(const Replay& replay, int width);
-// Of the first few robots that move.
+// The motion of the first few robots that move.
 [[nodiscard]] Drawing DrawMotion(const Replay& replay, int width);
 
 }  // namespace tcs::report

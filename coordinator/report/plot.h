@@ -1,4 +1,4 @@
-// What the figures have in common: the frame around a plot, and labels.
+// The parts that the figures have in common: the frame around a plot, and labels.
 #pragma once
 
 #include <string>

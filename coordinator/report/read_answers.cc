@@ -16,7 +16,8 @@ Quantiles QuantilesOf(const AnswersJson& of, const char* key) {
           found->at("p99").get<std::int64_t>(), found->at("max").get<std::int64_t>()};
 }
 
-// Of what its commands were made; of a client that commands nothing, of the oldest that it read.
+// The age of the data that the client's commands were made of; for a client that commands nothing,
+// the age of the oldest data that it read.
 Quantiles DataAgeOf(const AnswersJson& client) {
   const Quantiles commanded = QuantilesOf(client, "command_age_ns");
   if (commanded.count > 0) return commanded;

@@ -1,4 +1,4 @@
-// What a summary says of how well clients kept up.
+// Reads from a summary how well clients kept up.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,8 +8,8 @@
 namespace tcs::report {
 
 // Fills the verdict, the warnings, the expectations, the chains, and of each client of `run` its
-// deadline and times. What is missing stays as it is; throws where something is not what it should
-// be.
+// deadline and times. A field that the summary lacks stays as it is; throws where something is not
+// what it should be.
 void TakeAnswers(const nlohmann::json& summary, Run* run);
 
 }  // namespace tcs::report

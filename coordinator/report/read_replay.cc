@@ -23,12 +23,12 @@ const std::vector<std::string_view> kCommandColumns{"acts_ns", "target", "quanti
 
 namespace {
 
-// As many as a screen shows, and no more bytes than this for each of them: what the deltas of a
-// pose and of a number take.
+// The most moments per second: as many as a screen shows. The deltas of a pose and of a number take
+// no more bytes than this.
 constexpr double kMostPerSecond = 50;
 constexpr double kBytesOfPose = 12, kBytesOfNumber = 3;
-// Contacts are bounded beside all that: one takes some 16 bytes, and all of them a third of the
-// room.
+// Contacts are bounded beside all that: a contact takes some 16 bytes, and all contacts a third of
+// the room.
 constexpr std::size_t kRoomPerContact = 50;
 
 void Warn(const std::string& path, std::int64_t lines, std::vector<std::string>* warnings) {
@@ -71,7 +71,7 @@ LoadResult<Replay> ReadReplay(const std::string& folder, const std::string& name
     std::vector<std::string_view> columns;
     bool (ReplayReader::*take)(const CsvFields&);
   };
-  // The moments are those of the first.
+  // The moments are those of the first file.
   const File files[] = {{"/bodies.csv", kStateColumns, &ReplayReader::TakeState},
                         {"/joints.csv", kJointColumns, &ReplayReader::TakeJoint},
                         {"/contacts.csv", kContactColumns, &ReplayReader::TakeContact},

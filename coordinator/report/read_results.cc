@@ -18,7 +18,7 @@ namespace {
 using UnorderedJson = nlohmann::json;
 namespace fs = std::filesystem;
 
-// What trials.json says.
+// The plan that trials.json has.
 struct Plan {
   std::string name;
   std::int64_t first_seed = 1, trials = 0;
@@ -39,15 +39,15 @@ std::string TextOf(const UnorderedJson& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-// Throws where it is none.
+// Throws where `vary` has no such key.
 Plan::Key KeyOf(const UnorderedJson& vary) {
   Plan::Key key{vary.at("key").get<std::string>(), {}};
   for (const UnorderedJson& value : vary.at("values")) key.values.push_back(TextOf(value));
   return key;
 }
 
-// Each value of one key with each of the others, the last key's changing first; none if they are
-// too many to be meant.
+// All combinations of the keys' values, the last key's value changing first; empty if there are too
+// many combinations to be meant.
 std::vector<std::vector<std::string>> CombinationsOf(const std::vector<Plan::Key>& keys) {
   constexpr std::size_t kMost = 100'000;
   std::vector<std::vector<std::string>> all(1);
@@ -95,14 +95,14 @@ std::string FolderName(const std::string& folder) {
   return fs::weakly_canonical(folder, error).filename().string();
 }
 
-// As tcsim trials calls it.
+// The folder of a value, as tcsim trials calls it.
 std::string FolderOf(std::string value) {
   std::replace(value.begin(), value.end(), '/', '_');
   if (value.starts_with('.')) value[0] = '_';
   return value;
 }
 
-// What tcsim said last about a trial that has no summary.
+// The last sentence of tcsim about a trial that has no summary.
 std::string LastWords(const std::string& folder) {
   const std::optional<std::string> log = ReadFile(folder + "/tcsim.log");
   if (!log) return IsThere(folder) ? "it did not end" : "it was not made";
@@ -128,7 +128,7 @@ class ResultsReader {
   ResultsReader(const std::vector<std::string>& bodies, Distance distance)
       : bodies_(bodies), distance_(distance) {}
 
-  // One sentence, or empty.
+  // Adds the folder. Returns one sentence, or an empty text.
   std::string Add(const std::string& folder) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) {
@@ -252,7 +252,7 @@ class ResultsReader {
       results_.scenario = run.scenario;
       first_folder_ = folder;
     }
-    // Without a summary nobody knows.
+    // Without a summary nobody knows the scenario.
     if (run.has_summary && run.scenario != results_.scenario) {
       return fmt::format(
           "{} is of scenario '{}', but {} is of '{}'; a report compares runs of one scenario: make "
@@ -290,7 +290,7 @@ class ResultsReader {
 
   const std::vector<std::string> bodies_;
   const Distance distance_;
-  bool reads_figures_only_ = false;  // of a grid: its tables would be too many
+  bool reads_figures_only_ = false;  // of a grid, whose tables would be too many
   Results results_;
   std::string first_folder_;
 };

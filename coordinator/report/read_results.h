@@ -10,10 +10,10 @@
 
 namespace tcs::report {
 
-// Each folder is a run's (a system with one run), that of several trials (a system), or that of
-// trials over several values (a sweep). Runs that did not go to their end are named in their
-// system; a folder without any good run is left out with a warning. One sentence if nothing is
-// left, if a folder is none of these, or if not all are of one scenario.
+// A folder is that of a run (a system with one run), of several trials (a system), or of trials
+// over several values (a sweep). Runs that did not go to their end are named in their system; a
+// folder without any good run is left out with a warning. The error is one sentence: nothing is
+// left, a folder is none of these, or not all folders are of one scenario.
 [[nodiscard]] LoadResult<Results> ReadResults(const std::vector<std::string>& folders,
                                               const std::vector<std::string>& bodies,
                                               Distance distance = Distance::kRead);

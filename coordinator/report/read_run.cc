@@ -18,7 +18,7 @@ namespace {
 
 using UnorderedJson = nlohmann::json;
 
-// None, or why the run is no good: a client of it failed.
+// Why the run is no good: one of its clients failed; none if it is good.
 std::optional<std::string> FailureOf(const UnorderedJson& clients) {
   for (const auto& [name, client] : clients.items()) {
     const auto status = client.at("wait_status").get<int>();
@@ -32,7 +32,7 @@ std::optional<std::string> FailureOf(const UnorderedJson& clients) {
   return {};
 }
 
-// What a run without a summary is: no more is known of it than what its tables say.
+// A run without a summary: no more is known of the run than what its tables say.
 LoadResult<Run> WithoutSummary(const std::string& folder) {
   Run run;
   run.folder = folder;
@@ -84,7 +84,7 @@ LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
     if (was_interrupted && ends == Ends::kWhole) return LoadError{folder + " was interrupted"};
     run.measures = MeasuresFromSummary(*text).value_or(Measures());
     run.scenario = json.at("scenario").get<std::string>();
-    // Runs of earlier versions did not say.
+    // Runs of earlier versions did not say these.
     run.sync = json.value("sync", "");
     run.accounting = json.value("accounting", "");
     json.at("virtual_ns").get_to(run.virtual_ns);
@@ -227,7 +227,7 @@ void WarnOfLines(const std::string& path, std::int64_t lines, std::vector<std::s
       fmt::format("{} has {} that cannot be used; left out", path, Count(lines, "line")));
 }
 
-// Runs of earlier versions have none.
+// Runs of earlier versions have no activations.
 std::optional<LoadError> ReadActivations(const std::string& folder, Run* run,
                                          std::vector<std::string>* warnings) {
   if (const std::string path = folder + "/activations.csv"; IsFile(path)) {
@@ -241,7 +241,7 @@ std::optional<LoadError> ReadActivations(const std::string& folder, Run* run,
   return {};
 }
 
-// Runs of earlier versions have none; without a summary nobody knows which of them count.
+// Runs of earlier versions have no responses; without a summary nobody knows which responses count.
 void TakeResponses(const std::string& folder, Run* run) {
   if (!run->has_answers || !IsFile(folder + "/responses.csv")) return;
   const auto read = explain::ReadTold(folder);

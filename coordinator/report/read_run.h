@@ -9,12 +9,12 @@
 
 namespace tcs::report {
 
-// Which runs are wanted: those that went to their end and of which no client failed, or any; of one
-// that was cut off what it noted last is taken as its summary, if it noted anything, and a warning
-// says so.
+// Which runs are wanted: runs that went to their end and of which no client failed, or any. For a
+// run that was cut off the last note is taken as its summary, if the run noted anything, and a
+// warning says so.
 enum class Ends { kWhole, kAny };
 
-// That of two bodies is read, or not, where nobody asks for it.
+// Whether the distance of two bodies is read where nobody asks for it.
 enum class Distance { kRead, kLeftOut };
 
 // The distance is that between `bodies`, or, if those are empty, between the first body that
@@ -25,11 +25,11 @@ enum class Distance { kRead, kLeftOut };
                                       std::vector<std::string>* warnings,
                                       Distance distance = Distance::kRead);
 
-// What its summary says, without its tables: for many runs.
+// Reads a run's summary, without its tables: for many runs.
 [[nodiscard]] LoadResult<Run> ReadRunFigures(const std::string& folder,
                                              std::vector<std::string>* warnings);
 
-// That, and the times of its activations.
+// Reads a run's summary, and the times of its activations.
 [[nodiscard]] LoadResult<Run> ReadRunTimes(const std::string& folder,
                                            std::vector<std::string>* warnings);
 

@@ -61,7 +61,7 @@ class SaidReader {
     }
   }
 
-  // What was written last without an end of line.
+  // Takes the text that was written last without an end of line.
   void TakeRests() {
     for (auto& [name, stream] : streams_) {
       if (stream.text) Add(stream, std::string_view(*stream.text).substr(stream.done));

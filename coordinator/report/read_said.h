@@ -1,4 +1,4 @@
-// What clients wrote, and when.
+// The lines that clients wrote, and when.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace tcs::report {
 
-// How many of a run a page holds.
+// How many lines and marks of a run a page holds.
 inline constexpr std::size_t kMostSaidLines = 4000, kMostSaidMarks = 300;
 
-// The line, which was there by then; none of an empty one.
+// The line, which was there by `time_us`; none for an empty line.
 [[nodiscard]] std::optional<Said> SaidOf(std::int64_t time_us, const std::string& client,
                                          const std::string& stream, std::string_view line);
 

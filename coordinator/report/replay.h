@@ -1,4 +1,4 @@
-// What the world of one run did, made small enough for a page that shows it again.
+// The motion of one run's world, made small enough for a page that shows the run again.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace tcs::report {
 // Position in metres, then an orientation x, y, z, w.
 using PoseRow = std::array<double, 7>;
 
-// Of a body, or of a link and all that is fixed to it.
+// The track of a body, or of a link and all that is fixed to it.
 struct PoseTrack {
   std::string name;  // in bodies.csv
   std::vector<PoseRow> poses;
@@ -24,10 +24,10 @@ struct PoseTrack {
   [[nodiscard]] bool IsStill() const;
 };
 
-// A quantity over time. What is commanded counts from the first command on.
+// A quantity over time. A commanded quantity counts from the first command on.
 struct Signal {
   std::size_t robot = 0;
-  std::string panel;  // that it is drawn in, with its unit: "velocity [m/s]"
+  std::string panel;  // that the signal is drawn in, with its unit: "velocity [m/s]"
   std::string name;
   std::size_t first = 0;  // moment from which on there are values
   std::vector<double> values;
@@ -41,7 +41,7 @@ struct RobotTracks {
       paths;  // tracks that show its way: the root, or what moves on one that stands
 };
 
-// A line that a client wrote. A mark is one that begins with "mark:".
+// A line that a client wrote. A mark is a line that begins with "mark:".
 struct Said {
   std::int64_t time_us = 0;
   std::string client, stream, text;
@@ -55,21 +55,22 @@ struct Replay {
   std::vector<RobotTracks> robots;
   std::vector<Signal> signals;
   ContactTrack contacts;
-  nlohmann::ordered_json scene;  // what to draw: "tracks" has the shapes of each, in its frame
+  nlohmann::ordered_json scene;  // things to draw: "tracks" has the shapes of each, in its frame
   std::vector<Said> said;
   std::int64_t said_more = 0;  // lines that there was no room for
   double end_s = 0;
-  std::size_t trials = 1;  // of which it is the first
+  std::size_t trials = 1;  // of which this is the first
 };
 
-// From what a run left. A folder without bodies.csv has a replay without moments, tracks and
-// robots. Of earlier versions' runs there are no shapes. `most_bytes` is about what the encoded
-// replay may take: more bodies have fewer moments.
+// Reads the replay from a run's folder. A folder without bodies.csv has a replay without moments,
+// tracks and robots. The runs of earlier versions have no shapes. `most_bytes` is about the size
+// that the encoded replay may have: more bodies have fewer moments.
 [[nodiscard]] LoadResult<Replay> ReadReplay(const std::string& folder, const std::string& name,
                                             double end_s, std::size_t most_bytes,
                                             std::vector<std::string>* warnings);
 
-// As page/replay_data.js reads it: an object of JSON, tracks and signals in it as base64 of bytes.
+// The replay as page/replay_data.js reads it: an object of JSON, tracks and signals in it as base64
+// of bytes.
 [[nodiscard]] nlohmann::ordered_json ToJson(const Replay& replay);
 [[nodiscard]] std::string Encoded(const Replay& replay);
 

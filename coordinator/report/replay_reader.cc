@@ -18,7 +18,7 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 struct Quantity {
   std::string_view name, panel, unit;
 };
-// Of commands; a joint's unit is the joint's.
+// The quantities of commands; a joint's unit is the joint's.
 constexpr Quantity kQuantities[] = {
     {"force_x", "commanded force", "N"},         {"force_y", "commanded force", "N"},
     {"force_z", "commanded force", "N"},         {"torque_x", "commanded torque", "N m"},
@@ -27,7 +27,7 @@ constexpr Quantity kQuantities[] = {
     {"turn", "commanded turn rate", "rad/s"},
 };
 
-// Of a joint whose positions are in `unit`.
+// The unit of the effort of a joint whose positions are in `unit`.
 std::string EffortUnit(const std::string& unit) { return unit == "m" ? "N" : "N m"; }
 
 std::string LastPart(const std::string& name) {
@@ -52,7 +52,7 @@ ReplayReader::ReplayReader(ReplayScene scene, Replay* replay, double interval_s)
 
 bool ReplayReader::TakeState(const CsvFields& fields) {
   const auto known = track_of_.find(std::string(fields[1]));
-  if (known == track_of_.end() && has_scene_) return true;  // it is fixed to another one
+  if (known == track_of_.end() && has_scene_) return true;  // a link that is fixed to another one
   const auto time = ToReal(fields[0]);
   if (!time) return false;
   if (!NoteTime(*time)) return true;
@@ -108,7 +108,7 @@ bool ReplayReader::TakeContact(const CsvFields& fields) {
   return true;
 }
 
-// Holds until the next one of its kind.
+// The command holds until the next one of its kind.
 bool ReplayReader::TakeCommand(const CsvFields& fields) {
   const auto acts = ToInteger(fields[0]);
   const auto value = ToReal(fields[3]);
@@ -135,7 +135,7 @@ bool ReplayReader::TakeCommand(const CsvFields& fields) {
                             : "commanded joint positions",
                  is_effort ? EffortUnit(unit) : unit + (is_speed ? "/s" : ""), LastPart(target));
   }
-  if (signal == nullptr) return true;  // of nobody who is shown
+  if (signal == nullptr) return true;  // of no robot that is shown
   const double acts_s = static_cast<double>(*acts) * 1e-9;
   const auto& times = replay_.time_s;
   const auto from = std::lower_bound(times.begin(), times.end(), acts_s - 1e-9) - times.begin();
@@ -148,7 +148,7 @@ bool ReplayReader::TakeCommand(const CsvFields& fields) {
 // Once all files are read.
 void ReplayReader::Finish() {
   for (PoseTrack& track : replay_.tracks) {
-    // Of what a run that was cut off wrote last there may be only a part.
+    // A run that was cut off may have written only a part of its last moment.
     const PoseRow last = track.poses.empty() ? PoseRow{0, 0, 0, 0, 0, 0, 1} : track.poses.back();
     track.poses.resize(replay_.time_s.size(), last);
   }
@@ -184,7 +184,7 @@ void ReplayReader::TakePose(std::size_t number, const std::array<double, 10>& n)
   PoseTrack& track = replay_.tracks[number];
   const std::size_t moment = replay_.time_s.size() - 1;
   PoseRow pose{n[0], n[1], n[2], n[3], n[4], n[5], n[6]};
-  // The same orientation has two signs; of these the one that is near the last.
+  // An orientation has two signs; the one that is near the last pose is taken.
   if (!track.poses.empty()) {
     const PoseRow& last = track.poses.back();
     double same = 0;
@@ -211,7 +211,7 @@ std::string ReplayReader::UnitOf(const std::string& joint) const {
   return "rad";
 }
 
-// None for one of nobody.
+// Null if no robot that is shown has the target.
 Signal* ReplayReader::SignalOf(const std::string& target, std::string_view panel,
                                std::string_view unit, const std::string& name) {
   const std::string_view owner = std::string_view(target).substr(0, target.find('/'));
@@ -230,7 +230,7 @@ Signal* ReplayReader::SignalAt(std::size_t robot, const std::string& panel,
   return &replay_.signals[place->second];
 }
 
-// Each moment without a value has that of the one before.
+// A moment without a value has the value of the moment before.
 void ReplayReader::Hold(Signal* signal) const {
   auto& values = signal->values;
   const auto known =
@@ -267,7 +267,7 @@ void ReplayReader::Thin() {
     for (std::size_t i = 0; 2 * i < all->size(); ++i) (*all)[i] = (*all)[2 * i];
     all->resize((all->size() + 1) / 2);
   };
-  // A command counts until the next one, and so does that of a moment that is left out.
+  // A command counts until the next one; so does the command of a moment that is left out.
   for (Signal& signal : replay_.signals) {
     for (std::size_t i = 1; i + 1 < signal.values.size(); i += 2) {
       if (std::isnan(signal.values[i + 1])) signal.values[i + 1] = signal.values[i];

@@ -1,6 +1,6 @@
-// Makes a replay of the lines of a run's tables, one after the other: those of bodies.csv say which
-// moments there are, those of joints.csv, contacts.csv and
-// commands.csv are put to them.
+// Makes a replay of the lines of a run's tables, one after the other: the lines of bodies.csv say
+// which moments there are, the lines of joints.csv, contacts.csv and commands.csv are put to these
+// moments.
 #pragma once
 
 #include <array>
@@ -17,20 +17,21 @@
 
 namespace tcs::report {
 
-// What the reader wants of each table.
+// The columns that the reader wants of each table.
 extern const std::vector<std::string_view> kStateColumns, kJointColumns, kContactColumns,
     kCommandColumns;
 
 class ReplayReader {
  public:
-  // `replay` is filled, and outlives this. Of moments that are closer than `interval_s` the first.
+  // `replay` is filled, and outlives this. Of moments that are closer than `interval_s` the first
+  // is kept.
   ReplayReader(ReplayScene scene, Replay* replay, double interval_s);
 
   // Fields under the columns above. False: the line is of no use.
   [[nodiscard]] bool TakeState(const CsvFields& fields);
   [[nodiscard]] bool TakeJoint(const CsvFields& fields);
   [[nodiscard]] bool TakeContact(const CsvFields& fields);
-  // Holds until the next one of its kind.
+  // The command holds until the next one of its kind.
   [[nodiscard]] bool TakeCommand(const CsvFields& fields);
 
   // Once all lines are taken: every moment has a pose of every track, and each signal a value from

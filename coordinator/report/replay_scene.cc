@@ -79,7 +79,8 @@ class SceneReader {
     std::vector<bool> is_placed(links.size());
     std::vector<Place> places(links.size());
     ReplayScene::Robot robot{model.at("name"), 0, {}, {}};
-    // A parent may stand after its child. Each round places at least one, or the file is no tree.
+    // A parent may stand after its child. Each round places at least one link, or the file is no
+    // tree.
     for (std::size_t left = links.size(), before = left + 1; left > 0 && left < before;) {
       before = left;
       for (std::size_t i = 0; i < links.size(); ++i) {
@@ -131,7 +132,8 @@ class SceneReader {
     return files.size();
   }
 
-  // Makes a mesh of one that is in a file. False if it is not to be had.
+  // Makes a mesh of the page of a visual whose mesh is in a file. False if the mesh is not to be
+  // had.
   bool ReadMesh(Json* visual) {
     if (!looks_ || !visual->contains("path")) return false;
     const auto scale = visual->at("scale").get<std::array<double, 3>>();
@@ -147,8 +149,8 @@ class SceneReader {
     return true;
   }
 
-  // What it looks like, or where nothing is said of that, what it collides with. The colour of a
-  // mesh that is not here is that of the shapes in its stead.
+  // Adds the looks of the link, or its collision shapes where nothing is said of its looks. Shapes
+  // in the stead of a mesh that is not here have the mesh's colour.
   void AddShapes(const Json& link, const Place& place) {
     Json visuals = link.at("visuals");
     bool is_drawn = !visuals.empty();

@@ -29,7 +29,7 @@ double WayOf(const PoseTrack& track) {
   return way;
 }
 
-// "predator went 31.2 m and prey 40.0 m", of many those that went least and most.
+// "predator went 31.2 m and prey 40.0 m", of many robots those that went least and most.
 std::string WaysIn(const Replay& replay) {
   struct Went {
     double way;

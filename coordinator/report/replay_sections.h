@@ -1,4 +1,4 @@
-// What the page begins with: the world of each system's first run, the robots in it, and what
+// The sections on what happened: the world of each system's first run, the robots in it, and what
 // programs said.
 #pragma once
 
@@ -14,7 +14,8 @@ namespace tcs::report {
 // HTML of a section: the player, with what it plays. Without a world in any of the replays a
 // sentence says so.
 [[nodiscard]] std::string WorldSection(const std::vector<Replay>& replays);
-// Of the first replay that has moments; none: there is no such one, or nothing moves in it.
+// The figure of the first replay that has moments; none: there is no such replay, or nothing moves
+// in it.
 [[nodiscard]] std::optional<Figure> PathsFigure(const std::vector<Replay>& replays);
 [[nodiscard]] std::optional<Figure> MotionFigure(const std::vector<Replay>& replays);
 // HTML of a section, of the first replay where there is no script.

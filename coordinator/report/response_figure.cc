@@ -43,7 +43,7 @@ std::string LegendOf(const ResponseRow& row, double pixels) {
   return WidthOf(all) <= pixels ? all : Fitted(misses, pixels);
 }
 
-// Of its response times and deadlines.
+// The longest of the group's response times and deadlines.
 double LongestOf(const ResponseGroup& group) {
   double most_s = 0;
   for (const ResponseRow& row : group.rows)
@@ -60,7 +60,7 @@ void DrawRow(Svg* svg, const Frame& frame, const Axis& x, const Scale& scale,
   if (row.deadline_s <= 0) return;
   const double at = x.Pixel(row.deadline_s * scale.of_second);
   svg->Line(at, frame.top - 4, at, frame.bottom, "deadline");
-  // Beside its line, where there is room.
+  // The label stands beside its line, where there is room.
   const std::string label = "deadline " + Seconds(row.deadline_s);
   const bool fits = at + 5 + WidthOf(label) <= frame.right;
   svg->Text(fits ? at + 5 : at - 5, frame.top + 8, fits ? Svg::Anchor::kStart : Svg::Anchor::kEnd,

@@ -1,5 +1,5 @@
-// What result folders hold (docs/RESULTS.md), as a report needs it. ReadResults (read_results.h)
-// fills it.
+// The contents of result folders (docs/RESULTS.md), as a report needs them. ReadResults
+// (read_results.h) fills them in.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace tcs::report {
 
-// Times in virtual nanoseconds, as summary.json has them. Nothing is known of none.
+// Times in virtual nanoseconds, as summary.json has them. A count of 0: nothing is known.
 struct Quantiles {
   std::int64_t count = 0, p50_ns = 0, p99_ns = 0, max_ns = 0;
 };
 
-// What was expected of a client, and how often it was not met.
+// A client's deadline, and how often it was missed.
 struct ClientDeadline {
   std::int64_t deadline_ns = 0;
   std::string period_of;  // a channel or "its timer"; empty: the scenario says so
   std::int64_t judged = 0, missed = 0;
 };
 
-// From a sensor to an actuator.
+// A chain from a sensor to an actuator.
 struct Chain {
   std::string name;
   std::int64_t deadline_ns = 0;  // 0: there is none
@@ -32,7 +32,7 @@ struct Chain {
   Quantiles age;
 };
 
-// Of a client's activations, in one run.
+// The times of a client's activations, in one run.
 struct ActivationTimes {
   std::vector<double> lateness_s;  // from being made ready to its first processor time
   std::vector<double> response_s;  // from being made ready to being idle
@@ -50,7 +50,7 @@ struct Client {
   ActivationTimes times;            // where they were asked for
 };
 
-// What the scenario expects of a figure, and what came of it.
+// A scenario's expectation of a figure, and its outcome.
 struct Expectation {
   std::string subject, figure, what;
   bool holds = false;
@@ -63,13 +63,13 @@ struct Track {
 
 // One run.
 struct Run {
-  // Nobody stopped it, and none of its clients failed.
+  // True if nobody stopped the run, and none of its clients failed.
   bool is_whole = true;
-  // Without it the figures below are 0, and of the clients nothing is known.
+  // Without a summary the figures below are 0, and nothing is known of the clients.
   bool has_summary = true;
   // Answers from runs of earlier versions are missing.
   bool has_answers = false;
-  std::vector<std::string> verdict;  // worst first; why it is not whole before all
+  std::vector<std::string> verdict;  // worst first; before all why the run is not whole
   std::vector<std::string> warnings;
   std::vector<Expectation> expectations;
   std::vector<Chain> chains;
@@ -84,7 +84,7 @@ struct Run {
   std::string apart[2];  // the bodies that the track is of; empty without
 };
 
-// One of which there is nothing to show, and why.
+// A run of which there is nothing to show, and why.
 struct FailedRun {
   std::string name, why;
 };
@@ -102,19 +102,19 @@ struct SweepValue {
   System system;
 };
 
-// The same system over several values of one key.
+// A system over several values of one key.
 struct Sweep {
   std::string name, key;
   std::vector<SweepValue> values;
 };
 
-// One combination of the values of several keys.
+// A combination of the values of several keys.
 struct GridCell {
   std::vector<std::string> values;  // one for each key
   System system;
 };
 
-// The same system over several keys at once. Of its runs only the figures are read.
+// A system over several keys at once. Only the figures of its runs are read.
 struct Grid {
   std::string name;
   std::vector<std::string> keys;
@@ -133,10 +133,10 @@ struct Results {
 // " in “near”", as a sentence that tells systems apart needs it; nothing where there is only one.
 [[nodiscard]] std::string InSystem(const Results& results, const System& system);
 
-// Those of all runs of a system, one after the other.
+// The distances of all runs of a system, one after the other.
 [[nodiscard]] std::vector<double> Distances(const System& system);
 
-// What failed, a sentence per reason: "tcs, seed-0003 and seed-0007: it did not end".
+// The failures, a sentence per reason: "tcs, seed-0003 and seed-0007: it did not end".
 [[nodiscard]] std::vector<std::string> Failures(const System& system);
 
 }  // namespace tcs::report

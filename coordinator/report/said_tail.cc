@@ -10,7 +10,7 @@ namespace tcs::report {
 
 namespace {
 
-// Of what a client writes at one time.
+// The most that is read of what a client writes at one time.
 constexpr std::size_t kMostAtOnce = 1 << 20;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What clients of a run that goes on write, and when.
+// The lines that clients of a run that goes on write, and when.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// The parts of a report: what is shown of the results, and the sentence that says what it shows.
-// Every sentence is computed from the data.
+// The parts of a report: a table or a figure of the results, and the sentence that says what it
+// shows. Every sentence is computed from the data.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What a few numbers say about many. All functions take any number of values, none included.
+// A few numbers that tell of many. All functions take any number of values, none included.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@ struct Spread {
   double least = 0, lower_quartile = 0, median = 0, upper_quartile = 0, most = 0;
 };
 
-// All zero for no values. Values that are not finite must not be among them.
+// All fields are 0 for no values. Values that are not finite must not be among them.
 [[nodiscard]] Spread SpreadOf(std::vector<double> values);
 
-// Between the two nearest values where none is exactly there (R's type 7). `sorted` is not empty;
-// `share` is 0 … 1.
+// The quantile is between the two nearest values where no value is exactly there (R's type 7).
+// `sorted` is not empty; `share` is 0 … 1.
 [[nodiscard]] double Quantile(const std::vector<double>& sorted, double share);
 
-// The share of `values` that lies below `limit`; 0 for none.
+// The share of `values` that lies below `limit`; 0 for no values.
 [[nodiscard]] double ShareBelow(const std::vector<double>& values, double limit);
 
 struct Histogram {
@@ -31,7 +31,7 @@ struct Histogram {
   [[nodiscard]] double ShareOf(std::size_t bin) const;
 };
 
-// Bins of `width` from `low` to at least `high`, lower edges included; what lies outside counts in
+// Bins of `width` from `low` to at least `high`, lower edges included; a value outside counts in
 // the first or the last bin.
 [[nodiscard]] Histogram HistogramOf(const std::vector<double>& values, double low, double high,
                                     double width);

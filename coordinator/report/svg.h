@@ -9,7 +9,7 @@
 
 namespace tcs::report {
 
-// One picture: its size, and the elements inside.
+// A picture: its size, and the elements inside.
 struct Drawing {
   int width = 0, height = 0;
   std::string content;
@@ -27,7 +27,7 @@ class Svg {
   // `outline` and back along the line y = `base`.
   void Area(const Points& outline, double base, std::string_view classes);
   void Path(std::string_view commands, std::string_view classes);
-  // y is the baseline. `text` is plain: it is escaped here.
+  // y is the baseline. `text` is plain, and is escaped here.
   void Text(double x, double y, Anchor anchor, std::string_view text, std::string_view classes);
 
   [[nodiscard]] std::string Take() { return std::move(content_); }

@@ -101,7 +101,7 @@ Drawing DrawSweep(const SweepPlot& plot, int width) {
   Axis x = logarithmic ? Axis::Logarithmic(across.low, across.high)
                        : Axis::Exact(across.low, across.high, 5);
   x.Place(frame.left, frame.right);
-  // Only as far as there are values, with room for the dots.
+  // The axis goes only as far as there are values, with room for the dots.
   const double from = x.Pixel(across.low), to = x.Pixel(across.high);
   const double room = 24;
   if (to > from) {

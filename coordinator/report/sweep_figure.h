@@ -1,4 +1,5 @@
-// What a value does: the mean of each trial as a dot, per value their median and quartiles.
+// The effect of a value: the mean of each trial as a dot, per value the median and the quartiles of
+// the means.
 #pragma once
 
 #include <string>
@@ -27,7 +28,7 @@ struct SweepPlot {
   std::vector<SweepSeries> series;
 };
 
-// The values grow by factors rather than by amounts: then the axis is logarithmic.
+// True if the values grow by factors rather than by amounts: then the axis is logarithmic.
 [[nodiscard]] bool IsGeometric(std::vector<double> values);
 
 [[nodiscard]] Drawing DrawSweep(const SweepPlot& plot, int width);

@@ -1,4 +1,4 @@
-// What a value that was varied does.
+// The effect of a value that was varied.
 #include <fmt/format.h>
 
 #include <algorithm>

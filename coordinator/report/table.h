@@ -11,7 +11,7 @@ namespace tcs::report {
 
 using Column = TextColumn;
 
-// All texts are plain.
+// All texts of a table are plain.
 class Table {
  public:
   explicit Table(std::string caption, std::vector<Column> columns)
@@ -19,7 +19,7 @@ class Table {
   // As many cells as there are columns. A quiet row is one to compare with.
   void Row(std::vector<std::string> cells, bool is_quiet = false);
   [[nodiscard]] std::string Html() const;
-  // One line for each row, under a line of titles; numbers stand to the right.
+  // A line for each row, under a line of titles; numbers stand to the right.
   [[nodiscard]] std::string Text() const;
 
  private:

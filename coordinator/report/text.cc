@@ -25,7 +25,8 @@ std::size_t LengthOfCharacter(std::string_view text) {
   for (std::size_t i = 1; i < length; ++i) {
     if ((byte(i) & 0xC0) != 0x80) return 0;
   }
-  // Too long for what they say, halves of pairs, and beyond the last character.
+  // Characters that are too long for what they say, halves of pairs, and characters beyond the last
+  // one.
   if ((byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xED && byte(1) > 0x9F) ||
       (byte(0) == 0xF0 && byte(1) < 0x90) || (byte(0) == 0xF4 && byte(1) > 0x8F)) {
     return 0;
@@ -33,7 +34,7 @@ std::size_t LengthOfCharacter(std::string_view text) {
   return length;
 }
 
-// Empty for what may stand as it is.
+// Empty for a character that may stand as it is.
 std::string_view EntityFor(char c) {
   switch (c) {
     case '&':
@@ -75,7 +76,7 @@ std::string Escaped(std::string_view text) {
 
 std::string Significant(double value, int digits) {
   if (value == 0 || !std::isfinite(value)) return value == 0 ? "0" : "–";
-  // What rounding makes of it decides: 9.996 is 10.0.
+  // The rounded value decides: 9.996 is 10.0.
   const double places = digits - 1 - std::floor(std::log10(std::abs(value)));
   const double scale = std::pow(10.0, std::max(0.0, places));
   const double rounded = std::round(value * scale) / scale;
@@ -128,7 +129,7 @@ std::string Percent(double share) {
   if (percent == 0 || percent == 100) {
     number = fmt::format("{:.0f}", percent);
   } else if (percent > 99.5) {
-    // What is not all or nothing does not look like it.
+    // A share that is not all or nothing does not look like all or nothing.
     number = fmt::format("{:.1f}", std::min(percent, 99.9));
   } else if (percent >= 10) {
     number = fmt::format("{:.0f}", percent);

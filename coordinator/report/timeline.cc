@@ -75,7 +75,7 @@ void SortSlices(std::vector<Slice>* slices) {
 
 std::vector<Slice> Merged(const std::vector<Slice>& slices, std::int64_t gap_us) {
   std::vector<Slice> merged;
-  std::vector<std::size_t> last;  // of each row, in `merged`, one more than its place; 0: none yet
+  std::vector<std::size_t> last;  // of each row, its place in `merged` plus 1; 0: no slice yet
   for (const Slice& slice : slices) {
     const auto row = static_cast<std::size_t>(slice.row);
     if (last.size() <= row) last.resize(row + 1);
@@ -151,7 +151,7 @@ nlohmann::ordered_json ToJson(const Timeline& timeline) {
     real_start = slice.real_start;
     if (merged) PutNumber(&bytes, static_cast<std::uint64_t>(slice.real_ran));
   }
-  // What parts are of is said of many.
+  // Many parts are of the same thing, whose name is written once.
   auto whats = nlohmann::ordered_json::array(), misses = nlohmann::ordered_json::array();
   std::map<std::string, std::size_t> known;
   for (const Miss& miss : timeline.misses) {

@@ -1,4 +1,5 @@
-// Who ran when in one run, in virtual and in real time, made small enough for a page.
+// The times at which the rows of one run ran, in virtual and in real time, made small enough for a
+// page.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,7 @@ struct Slice {
   int row = 0;
   std::int64_t virtual_start = 0, virtual_end = 0;
   std::int64_t real_start = 0, real_end = 0;  // both 0 in runs without real times
-  // How much of that the row ran: all, but for slices that were made of several.
+  // How much of the slice the row ran: all of it, but for slices that were made of several.
   std::int64_t virtual_ran = 0, real_ran = 0;
 };
 
@@ -27,7 +28,7 @@ struct Slice {
 struct Miss {
   int row = 0;
   std::int64_t released_us = 0, due_us = 0, ended_us = 0;
-  std::string sentence;                                      // empty of the later of very many
+  std::string sentence;                                      // empty for the later of very many
   std::vector<std::pair<std::string, std::string>> parts{};  // how long, and what with
 };
 
@@ -41,7 +42,7 @@ struct Timeline {
   std::int64_t merged_us = 0;  // slices of a row that are closer than this are one
 };
 
-// What is read of dispatches.csv. Deterministic runs have no real times.
+// The columns that are read of dispatches.csv. Deterministic runs have no real times.
 extern const std::vector<std::string_view> kDispatchColumns;
 inline constexpr std::size_t kDispatchColumnsWithoutReal = 3;
 
@@ -63,18 +64,19 @@ class TimelineBuilder {
   Timeline& timeline_;
 };
 
-// From a run's dispatches.csv. A client's threads share its row.
+// Reads the timeline from a run's dispatches.csv. A client's threads share its row.
 [[nodiscard]] LoadResult<Timeline> ReadTimeline(const std::string& folder, const std::string& name);
 
-// Slices of a row become one where the gap between them is at most `gap_us` in each time. What each
-// row ran stays the same.
+// Slices of a row become one where the gap between them is at most `gap_us` in each time. The time
+// that each row ran stays the same.
 [[nodiscard]] std::vector<Slice> Merged(const std::vector<Slice>& slices, std::int64_t gap_us);
 
 // Merges slices that are closer and closer to each other until all timelines together have at most
-// `most_slices`. Those with few keep all of theirs.
+// `most_slices`. Timelines with few slices keep all of them.
 void Shorten(std::vector<Timeline>* timelines, std::size_t most_slices);
 
-// As page/timeline.js reads it: an object of JSON, the slices in it as base64 of bytes.
+// The timeline as page/timeline.js reads it: an object of JSON, the slices in it as base64 of
+// bytes.
 [[nodiscard]] nlohmann::ordered_json ToJson(const Timeline& timeline);
 [[nodiscard]] std::string Encoded(const Timeline& timeline);
 

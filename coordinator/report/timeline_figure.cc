@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTimelineTop = 6, kTimelineTitle = 24, kTimelineRow = 18, kTimelineBetween = 6,
                  kNameAbove = 15, kTimelineBottom = 40, kTimelineRight = 60;
-// What ran and took none of this axis's time is seen all the same.
+// A slice that took none of this axis's time is seen all the same.
 constexpr double kLeastShare = 0.12;
 
 // Of `columns` equal parts of 0 … `end`, the share that the row's slices fill.
@@ -63,7 +63,7 @@ class Picture {
     y_ += kTimelineTitle;
     svg_.Text(8, y_ - 8, Svg::Anchor::kStart, timeline.name, "name");
     for (std::size_t row = 0; row < timeline.rows.size(); ++row) {
-      if (timeline.rows[row] == kDynamicsRow) continue;  // all of virtual time is theirs
+      if (timeline.rows[row] == kDynamicsRow) continue;  // all of virtual time is the dynamics'
       Label(timeline.rows[row]);
       DrawRow(timeline, static_cast<int>(row));
       y_ += kTimelineRow + kTimelineBetween;
@@ -101,7 +101,7 @@ class Picture {
     DrawMisses(timeline, row);
   }
 
-  // One mark a pixel is enough.
+  // A mark per pixel is enough.
   void DrawMisses(const Timeline& timeline, int row) {
     long last = -1;
     for (const Miss& miss : timeline.misses) {

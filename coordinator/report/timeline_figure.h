@@ -1,5 +1,5 @@
 // The picture of timelines that needs no script: the whole of each run. page/timeline.js draws the
-// same for any part of it.
+// same for any part of a run.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace tcs::report {
 
-// Of each row the share of each column's time that it ran. Over virtual time, with a mark
-// where a deadline was missed.
+// Draws the share of each column's time that each row ran, over virtual time, with a mark where a
+// deadline was missed.
 [[nodiscard]] Drawing DrawTimelines(const std::vector<Timeline>& timelines, int width);
 
 }  // namespace tcs::report

@@ -16,7 +16,7 @@ bool AreNumbersAll(const std::vector<std::string>& values) {
                      [](const std::string& value) { return ValueAsNumber(value).has_value(); });
 }
 
-// By the first key's values first.
+// Sorts the cells by the first key's values first.
 void SortCells(Varied* varied) {
   std::vector<std::vector<std::string>> order;
   for (std::size_t i = 0; i < varied->keys.size(); ++i) order.push_back(varied->ValuesOf(i));

@@ -19,7 +19,7 @@ struct Varied {
   };
   std::vector<Cell> cells;
 
-  // Its place among the keys; none if it is not among them.
+  // The place of `key` among the keys; none if `key` is not among them.
   [[nodiscard]] std::optional<std::size_t> PlaceOf(const std::string& key) const;
   // The values of a key: numbers in their order, if all are numbers, else as they came.
   [[nodiscard]] std::vector<std::string> ValuesOf(std::size_t key) const;
@@ -28,13 +28,13 @@ struct Varied {
   [[nodiscard]] std::string TellingKey() const;
 };
 
-// All that the results have, its cells in the order of their values.
+// All varied trials of the results, with the cells in the order of their values.
 [[nodiscard]] std::vector<Varied> AllVaried(const Results& results);
 
 // All keys, each once.
 [[nodiscard]] std::vector<std::string> KeysOf(const std::vector<Varied>& all);
 
-// A value as a number, durations in seconds; none if it is neither.
+// A value as a number, durations in seconds; none if the value is neither.
 [[nodiscard]] std::optional<double> ValueAsNumber(const std::string& text);
 
 // The ends of keys that tell them apart, of two parts at least: "cpu.speed".

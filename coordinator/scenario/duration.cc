@@ -13,7 +13,7 @@ namespace {
 struct Unit {
   std::string_view name;
   std::int64_t multiplier;
-  int power_of_ten;  // one of it is multiplier * 10^power_of_ten ns
+  int power_of_ten;  // one unit is multiplier * 10^power_of_ten ns
 };
 
 constexpr std::array kUnits = {

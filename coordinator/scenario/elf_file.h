@@ -1,4 +1,4 @@
-// What the head of an ELF file says about how its program is loaded.
+// The part of an ELF file's head that says how its program is loaded.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@ struct ElfFile {
   bool is_64_bit = false;
   bool is_x86_64 = false;
   bool is_program = false;  // of a type that can be executed
-  // The dynamic loader it asks for (PT_INTERP); none: statically linked.
+  // The dynamic loader that the file asks for (PT_INTERP); none: statically linked.
   std::optional<std::string> loader;
 };
 
-// Reads the ELF file open at `fd` with positioned reads; none if it is no ELF file or is damaged.
-// The loader is looked for in 64-bit little-endian files only.
+// Reads the ELF file open at `fd` with positioned reads; none if the file is no ELF file or is
+// damaged. The loader is looked for in 64-bit little-endian files only.
 [[nodiscard]] std::optional<ElfFile> ReadElfFile(int fd);
 
 }  // namespace tcs

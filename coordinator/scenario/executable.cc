@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 // The kernel follows no more '#!' lines than this, one leading to the next.
 constexpr int kMostInterpreters = 4;
-// Of a '#!' line the kernel reads no more.
+// The kernel reads no more than this of a '#!' line.
 constexpr std::size_t kLongestHashBang = 255;
 
 LoadError Mistake(const std::string& path, std::string_view what) {

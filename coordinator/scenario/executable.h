@@ -1,5 +1,5 @@
-// Finding the program that a command names, and telling whether tcs can run it. Both read the file
-// system; neither runs anything. Errors are sentences for the user.
+// Finding the program that a command names, and telling whether tcs can run it. Both functions read
+// the file system, and run nothing. Errors are sentences for the user.
 #pragma once
 
 #include <optional>

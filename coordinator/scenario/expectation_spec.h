@@ -1,4 +1,5 @@
-// What a scenario expects of its run (`expect`), as it describes it: plain values, already checked.
+// An expectation of a scenario of its run (`expect`), as the scenario describes it: plain values,
+// already checked.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +11,20 @@
 
 namespace tcs {
 
-// One figure, and between what it is to be, both included.
+// A figure, and the bounds between which the figure is to be, both included.
 struct ExpectationSpec {
   std::string place;    // "scenario.yaml:12: "
   std::string subject;  // as people read it: "hover/controller", "body drone", "metric error"
   std::string figure;   // "misses", "z"
-  // Of a client, a chain, a metric or the run: its name among the run's Measures.
+  // For a client, a chain, a metric or the run: the figure's name among the run's Measures.
   std::string measure;
-  // Of a body, a joint or a channel, which is looked at all the while: which of Scenario::kept.
+  // For a body, a joint or a channel, which is looked at all the while: the index in
+  // Scenario::kept.
   std::optional<std::size_t> kept;
   MeasureUnit unit = MeasureUnit::kNumber;  // seconds for durations
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
-  double share = 1;  // of trials, that it has to hold in
+  double share = 1;  // of trials in which the expectation has to hold
 };
 
 }  // namespace tcs

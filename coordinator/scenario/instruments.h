@@ -28,16 +28,17 @@ struct ImuSpec {
   Mount mount;
 };
 
-// Where the mount is in the world, and how it moves: the truth, as far as its noise leaves it.
+// Where the mount is in the world, and how it moves: the truth, as far as the sensor's noise leaves
+// it.
 struct TruthSpec {
   Mount mount;
   std::string world_frame = "world";
 };
 
-// What a robot's firmware makes of how far its wheels have turned.
+// The odometry that a robot's firmware makes of how far its wheels have turned.
 struct WheelOdometrySpec {
   std::vector<int> joints;  // as Dynamics numbers them
-  std::size_t left = 1;     // so many are wheels on the left; they come first
+  std::size_t left = 1;     // so many wheels are on the left; they come first
   WheelBase base;
   std::string frame = "odom", child_frame = "base_link";
 };
@@ -52,12 +53,12 @@ struct TransformsSpec {
   std::vector<Pair> pairs;
 };
 
-// The same for links that do not move, once.
+// The places of links that do not move, told once.
 struct FixedTransformsSpec {
   TransformsSpec transforms;
 };
 
-// The robot's own file, once.
+// The robot's own file, told once.
 struct DescriptionSpec {
   std::string text;
 };
@@ -76,14 +77,14 @@ struct LidarSpec {
   VirtualDuration sweep{};  // from the first ray to the last
 };
 
-// The same with several rays above each other.
+// A lidar with several rays above each other.
 struct Lidar3dSpec {
   LidarSpec lidar;
   std::size_t layers = 16;
   double lowest_rad = -0.2617993877991494, highest_rad = 0.2617993877991494;
 };
 
-// How far it is to what is nearest in a cone.
+// The distance to the nearest thing in a cone.
 struct RangeSpec {
   Mount mount;
   double field_of_view_rad = 0.26;
@@ -119,7 +120,7 @@ struct BarometerSpec {
 // Whether the link touches anything that is not of its own robot.
 struct ContactSpec {
   Mount mount;
-  double margin_m = 1e-3;  // what is as near as this is touched
+  double margin_m = 1e-3;  // a thing as near as this is touched
 };
 
 using InstrumentSpec =
@@ -127,7 +128,7 @@ using InstrumentSpec =
                  DescriptionSpec, LidarSpec, Lidar3dSpec, RangeSpec, DepthCameraSpec, GnssSpec,
                  MagnetometerSpec, BarometerSpec, ContactSpec>;
 
-// What can be wrong of a measurement.
+// The fields of a measurement that can have errors.
 enum class MeasuredField {
   kOrientation,
   kAngularRate,

@@ -73,7 +73,7 @@ void LoadHead(const YamlMap& top, Scenario* scenario) {
   }
 }
 
-// Free bodies pass through each other, on every engine; ODE has no others.
+// Free bodies pass through each other, on every engine; ODE has no other bodies.
 void CheckContacts(const YamlMap& top, Scenario* scenario) {
   if (!scenario->csv_contacts || (scenario->world && !scenario->world->models.empty())) return;
   const YamlValue& contacts = *top.Find("csv_contacts");
@@ -84,7 +84,7 @@ void CheckContacts(const YamlMap& top, Scenario* scenario) {
       "no model that moves; describe what touches under models, or remove it");
 }
 
-// `mistakes`: where they are all noted; null: the first is thrown.
+// `mistakes`: where all mistakes are noted; null: the first mistake is thrown.
 Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mistakes* mistakes) {
   std::vector<Setting> settings;
   for (const std::string& overlay : overrides.overlays) {
@@ -112,7 +112,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
                             overrides.run};
   const YamlValue& all = top.place();
   const bool has_world = all.Try([&] { LoadWorld(top, variables, &scenario); });
-  // What is on bodies that nobody has read cannot be right.
+  // Sections that are about bodies cannot be right if nobody has read the bodies.
   if (!has_world) return scenario;
   CheckContacts(top, &scenario);
   all.Try([&] { LoadRobots(top, variables, &scenario); });
@@ -122,7 +122,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   if (!all.HasMistakes()) CheckDdsTransports(top, &scenario);
   all.Try([&] { LoadMetrics(top, &scenario); });
   all.Try([&] { LoadExpect(top, is_shortened, &scenario); });
-  // The world gives the clock, and where nothing else is in it, too.
+  // The world gives the clock, also a world with nothing else in it.
   if (scenario.clock && !scenario.world) scenario.world.emplace();
   return scenario;
 }

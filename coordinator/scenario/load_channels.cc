@@ -33,7 +33,7 @@ ChannelType LoadType(const YamlValue& value) {
              Suggest(text, {"udp_json", "unix_json", "pty", "dds"}, "types"));
 }
 
-// What is taken by the channels so far.
+// The ends that the channels take so far.
 struct Ends {
   UdpEndpoints udp;
   UnixNames unix_names;
@@ -41,7 +41,7 @@ struct Ends {
   DdsTopics topics;
 };
 
-// Those that the type brings along; `socket` says where a socket is.
+// Adds the keys that the type brings along; `socket` is the key that says where a socket is.
 void AddKeys(ChannelType type, const char* socket, std::vector<std::string>* keys) {
   switch (type) {
     case ChannelType::kUdpJson:
@@ -106,7 +106,7 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   return channel;
 }
 
-// What a channel of commands is about.
+// The thing that a channel of commands is about.
 enum class Commanded { kBody, kLink, kJoints, kRotors };
 
 Commanded CommandedBy(const YamlMap& map) {

@@ -52,7 +52,7 @@ dds::Qos LoadProfile(const YamlValue& value) {
              Suggest(name, {"default", "sensor_data"}, "profiles"));
 }
 
-// Over what `qos` says already.
+// Loads the policies over those that `qos` has already.
 void LoadQos(const YamlValue& value, Side side, dds::Qos* qos) {
   if (!value.IsMap()) {
     *qos = LoadProfile(value);
@@ -79,7 +79,7 @@ void LoadQos(const YamlValue& value, Side side, dds::Qos* qos) {
   }
 }
 
-// Over what `end` says already; a topic that it does not say is required.
+// Loads the values over those that `end` has already; a topic is required if `end` has none.
 DdsTopicSpec LoadEnd(const YamlMap& map, std::string_view message, Side side, DdsTopicSpec end,
                      DdsTopics* topics) {
   if (const YamlValue* domain = map.Find("domain")) {
@@ -116,7 +116,7 @@ std::size_t LoadMessage(const YamlValue& value, const std::vector<std::string>& 
   return static_cast<std::size_t>(found - names.begin());
 }
 
-// Of bodies and of joints.
+// The message for a sensor of bodies or of joints.
 dds::SensorMessage LoadSensorMessage(const YamlValue& value) {
   const std::vector<std::string>& all = dds::SensorMessageNames();
   const std::string name = dds::FullMessageName(value.AsText());
@@ -128,7 +128,7 @@ dds::SensorMessage LoadSensorMessage(const YamlValue& value) {
       LoadMessage(value, {all.begin(), all.begin() + dds::kBodyMessages}));
 }
 
-// What the sensor writes goes without saying.
+// The message need not be given: the kind of sensor says which one it writes.
 DdsSensorEnd LoadInstrumentEnd(const YamlMap& map, const SensorChannelSpec& sensor,
                                DdsTopics* topics) {
   DdsSensorEnd to;
@@ -144,7 +144,7 @@ DdsSensorEnd LoadInstrumentEnd(const YamlMap& map, const SensorChannelSpec& sens
   return to;
 }
 
-// What nearly everybody reads.
+// The message that nearly everybody reads.
 dds::CommandMessage MessageFor(const CommandChannelSpec& command) {
   if (command.rotors) return dds::CommandMessage::kFloat64MultiArray;
   if (!command.joints) return dds::CommandMessage::kWrench;

@@ -1,5 +1,5 @@
-// What of a scenario file stands on DDS: channels of the type `dds`, and `clock`. Internal to
-// LoadScenario: mistakes are thrown as ScenarioMistake.
+// The parts of a scenario file that stand on DDS: channels of the type `dds`, and `clock`. Internal
+// to LoadScenario: mistakes are thrown as ScenarioMistake.
 #pragma once
 
 #include <string>
@@ -29,7 +29,7 @@ class DdsTopics {
   std::vector<Use> uses_;
 };
 
-// `sensor` is what the channel says besides.
+// `sensor` has what the channel says besides.
 DdsSensorEnd LoadDdsSensorEnd(const YamlMap& map, const SensorChannelSpec& sensor,
                               DdsTopics* topics);
 DdsCommandEnd LoadDdsCommandEnd(const YamlMap& map, const CommandChannelSpec& command,

@@ -1,4 +1,4 @@
-// `expect` of a scenario file: what its run has to come to.
+// `expect` of a scenario file: the figures that its run has to come to.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -30,7 +30,7 @@ double LoadLimit(const YamlValue& value, MeasureUnit unit) {
   return static_cast<double>(value.AsDuration().ns()) / 1e9;
 }
 
-// One number is the most; of a pair either may be null.
+// A single number is the most; of a pair either number may be null.
 void LoadBound(const YamlValue& value, ExpectationSpec* expectation) {
   if (!value.IsList()) {
     expectation->most = LoadLimit(value, expectation->unit);
@@ -62,7 +62,7 @@ double LoadShare(const YamlMap& map) {
 
 class ExpectLoader {
  public:
-  // `is_whole`: nothing before this has a mistake, so that it is known what there is.
+  // `is_whole`: no section before this one has a mistake, so that all names are known.
   ExpectLoader(bool is_whole, bool is_shortened, Scenario* scenario)
       : is_whole_(is_whole), is_shortened_(is_shortened), scenario_(*scenario) {
     if (!scenario->world || !is_whole) return;
@@ -109,7 +109,8 @@ class ExpectLoader {
     return found.name;
   }
 
-  // Runs tell of each pair of a sensor and a command, and of those that the scenario names.
+  // Runs tell of the chain of each pair of a sensor and a command, and of the chains that the
+  // scenario names.
   std::string FindChain(const YamlMap::Entry& entry, const std::string& name) const {
     if (!is_whole_) return name;
     std::vector<std::string> known;
@@ -124,7 +125,7 @@ class ExpectLoader {
     return "chain " + found.name;
   }
 
-  // What programs will print nobody knows yet.
+  // Nobody knows yet which metrics programs will print.
   std::string FindMetric(const YamlMap::Entry& entry, const std::string& name) const {
     std::vector<std::string> known;
     for (const MetricSpec& metric : scenario_.metrics) known.push_back(metric.name);
@@ -179,7 +180,7 @@ class ExpectLoader {
     entry.value.Fail("expects nothing; add a figure and its bound, like " + example);
   }
 
-  // What is looked at all the while.
+  // Loads expectations of a body, a joint or a channel, which is looked at all the while.
   void LoadKept(const YamlMap::Entry& entry, const std::string& word, const std::string& name) {
     if (!scenario_.world) {
       FailAtKey(entry, name,

@@ -37,7 +37,7 @@ InstrumentSpec LoadWheelOdometry(const YamlMap& map, const Scenario& scenario, V
   return odometry;
 }
 
-// Of the joints of the model that move, or that do not.
+// The places of the model's joints that move, or of those that do not move.
 TransformsSpec LoadPairs(const YamlMap& map, const Scenario& scenario, bool of_fixed) {
   const YamlValue& value = map.Require("model", "model: rover");
   const ModelPlace place = FindModelPlace(value, scenario);

@@ -24,14 +24,14 @@ std::size_t FindModel(const YamlValue& value, const Scenario& scenario) {
 
 namespace {
 
-// Joints are numbered through the world: those of the first model first.
+// Joints are numbered through the world: the joints of the first model come first.
 int FirstJointOf(std::size_t model, const Scenario& scenario) {
   std::size_t first = 0;
   for (std::size_t i = 0; i < model; ++i) first += scenario.world->models[i].joints.size();
   return static_cast<int>(first);
 }
 
-// The other way round.
+// The joint of that number in the world.
 template <class Models>
 auto& JointOf(int index, Models& models) {
   auto joint = static_cast<std::size_t>(index);
@@ -69,7 +69,7 @@ std::size_t FindJoint(const YamlValue& value, const RobotModel& model, Use use) 
              Suggest(name, known, "joints"));
 }
 
-// Appends the joint that `value` names, or those of the list that it is.
+// Appends the joint that `value` names, or the joints of the list that `value` is.
 void AddNamed(const YamlValue& value, const RobotModel& model, int first, Use use,
               JointGroup* group) {
   if (value.IsList()) {

@@ -10,20 +10,21 @@
 
 namespace tcs {
 
-// Whether the channel with the keys of `map` is about a model: it names one, and no body by
-// `body_key`.
+// Whether the channel with the keys of `map` is about a model: the channel names a model, and no
+// body by `body_key`.
 bool IsOfModel(const YamlMap& map, const char* body_key);
 
-// `model` and `joints`: all that have one coordinate, where none are named.
+// `model` and `joints`: all joints that have one coordinate, where no joints are named.
 JointGroup LoadJointGroup(const YamlMap& map, const Scenario& scenario);
 
 // The keys that a channel which drives joints can have; for wheels these are other keys.
 std::vector<std::string> JointDriveKeys(const YamlMap& map);
 
-// The same for joints that can be driven; `drive`, `stiffness`, `damping` and `lag`. With `drive:
-// differential` the joints are wheels, and the keys say of which robot.
+// `model` and `joints` for joints that can be driven; `drive`, `stiffness`, `damping` and `lag`.
+// With `drive: differential` the joints are wheels, and the keys say of which robot.
 JointDriveSpec LoadJointDrive(const YamlMap& map, const Scenario& scenario);
-// Gives the joints the lag of the channel that drives them. All channels of a joint have one.
+// Gives the joints the lag of the channel that drives them. All channels of a joint have the same
+// lag.
 void SetDriveLag(const YamlMap& map, const JointDriveSpec& spec, Scenario* scenario);
 
 // The index of the model that `value` names.
@@ -33,14 +34,14 @@ std::size_t FindModel(const YamlValue& value, const Scenario& scenario);
 struct WheelGroup {
   JointGroup group;
   std::size_t left = 0;
-  double most_radps = 0;  // that none of them is to turn faster than
+  double most_radps = 0;  // the speed that no wheel is to exceed
 };
 WheelGroup LoadWheels(const YamlMap& map, const Scenario& scenario);
 
 // `separation` and `radius`.
 WheelBase LoadWheelBase(const YamlMap& map);
 
-// The model that `value` names, and as which its links are numbered.
+// The model that `value` names, and the number of its first link.
 struct ModelPlace {
   const RobotModel* model;
   int first_link;

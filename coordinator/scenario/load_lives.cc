@@ -20,13 +20,13 @@ namespace fs = std::filesystem;
 
 constexpr int kLastNamedSignal = 31;
 
-// None ends a program by itself.
+// True for signals that stop or continue a program: none of these ends a program by itself.
 bool OnlyStopsOrContinues(int signal) {
   return signal == SIGSTOP || signal == SIGTSTP || signal == SIGTTIN || signal == SIGTTOU ||
          signal == SIGCONT;
 }
 
-// By its name, with or without SIG.
+// The number of the signal with that name, with or without SIG.
 int LoadSignal(const YamlValue& value) {
   const std::string text = value.AsText();
   std::vector<std::string> known;
@@ -105,8 +105,8 @@ void LoadWorkingDirectory(const YamlValue& value, const Variables& variables, Cl
   }
 }
 
-// The client that `value` names: ROBOT/CLIENT, or its own name where only one client can be meant,
-// those of the same robot before others.
+// The client that `value` names: ROBOT/CLIENT, or the client's own name where only one client can
+// be meant; clients of the same robot come before others.
 std::string FindClient(const YamlValue& value, const std::string& robot, const Scenario& scenario) {
   const std::string text = value.AsText();
   std::vector<std::string> known, meant;
@@ -122,7 +122,7 @@ std::string FindClient(const YamlValue& value, const std::string& robot, const S
     value.Fail("is '" + text + "', which can mean " + meant[0] + " or " + meant[1] +
                "; write ROBOT/CLIENT");
   }
-  // A slip of the fingers in the client's name alone is one, too.
+  // A slip of the fingers may also be in the client's name alone.
   std::vector<std::string> own;
   for (const std::string& name : known) {
     if (name.rfind(robot + "/", 0) == 0) own.push_back(name.substr(robot.size() + 1));

@@ -11,7 +11,8 @@ namespace tcs {
 // `start`, `stop_signal`, `stop_grace` and `working_directory` of a client.
 void LoadLife(const YamlMap& map, const Variables& variables, ClientSpec* client);
 
-// `after` of all clients, which may name each other; and what of that can never come.
+// Loads `after` of all clients, which may name each other. Clients that can never start are a
+// warning, or in a cycle a mistake.
 void LoadOrder(const YamlMap& robots, Scenario* scenario);
 
 }  // namespace tcs

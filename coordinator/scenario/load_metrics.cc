@@ -24,8 +24,8 @@ struct AskedFigure {
 };
 
 // The map's figures, and its other entries. In a map in braces YAML cuts a text at its commas:
-// `{max: norm(a.x, a.y)}` is the key `max` and a key `a.y)` without a value. They are put together
-// again.
+// `{max: norm(a.x, a.y)}` is the key `max` and a key `a.y)` without a value. The two parts are put
+// together again.
 std::vector<AskedFigure> TakeFigures(const YamlMap& map, std::vector<YamlMap::Entry>* others) {
   std::vector<AskedFigure> figures;
   const std::vector<YamlMap::Entry>& entries = map.entries();
@@ -45,7 +45,7 @@ std::vector<AskedFigure> TakeFigures(const YamlMap& map, std::vector<YamlMap::En
   return figures;
 }
 
-// `names`: null if it is not known what there is, because of mistakes elsewhere.
+// `names`: null if the names are not known, because of mistakes elsewhere.
 MetricSpec LoadMetric(const YamlMap::Entry& entry, MetricNames* names, Scenario* scenario) {
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();

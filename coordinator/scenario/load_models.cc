@@ -175,7 +175,7 @@ class Models {
     scenario_.details.insert(scenario_.details.end(), remarks.details.begin(),
                              remarks.details.end());
     if (const auto* errors = std::get_if<std::vector<LoadError>>(&loaded)) {
-      // Where all are asked for, all but the last are noted here.
+      // Where all mistakes are asked for, all but the last are noted here.
       for (std::size_t i = 0; i + 1 < errors->size(); ++i) {
         urdf.Try([&] { Refuse(urdf, path, (*errors)[i]); });
       }
@@ -186,7 +186,7 @@ class Models {
 
   [[noreturn]] static void Refuse(const YamlValue& urdf, const std::string& path,
                                   const LoadError& error) {
-    // Of a file as a whole it is the scenario that is to be mended. Messages show names of files.
+    // An error of a file as a whole is to be mended in the scenario. Messages show names of files.
     if (error.message.starts_with(Visible(path) + ": ")) {
       urdf.FailPlainly(urdf.name() + ": " + error.message);
     }
@@ -295,7 +295,7 @@ class Models {
     }
   }
 
-  // What is in each other at the start would be thrown apart.
+  // Links that overlap at the start would be thrown apart.
   void IgnoreOverlaps(const YamlMap& map, RobotModel* model) {
     const std::vector<std::pair<int, int>> pairs = OverlappingLinks(*model);
     if (pairs.empty()) return;
@@ -336,7 +336,7 @@ class Models {
                      Suggest(entry.key, known, "joints"));
   }
 
-  // Of a joint with one coordinate also [position, velocity].
+  // A joint with one coordinate may also have [position, velocity].
   static void LoadJointStart(const YamlMap::Entry& entry, Joint* joint) {
     if (CoordinatesOf(joint->kind) == 1 && entry.value.IsList()) {
       const std::vector<double> start = entry.value.AsNumbers(2, "[0.5, 0] (position, velocity)");
@@ -461,7 +461,7 @@ class Models {
     return scale;
   }
 
-  // The way up from the plane is its normal; it goes through `position`.
+  // The way up from the plane is its normal; the plane goes through `position`.
   static Pose PoseOfPlane(const YamlValue& plane, const YamlMap& map) {
     if (const YamlValue* v = map.Find("orientation")) {
       v->Fail("is for a plane, whose normal says it already; remove it");
@@ -516,7 +516,7 @@ void LoadModels(const YamlValue& value, const Variables& variables, Scenario* sc
   Models models(variables, scenario);
   map.ForEach([&](const YamlMap::Entry& entry) { models.Add(entry); });
   WarnOfWhatFallsThrough(map, scenario);
-  // What is static needs no steps.
+  // Static models need no steps.
   if (engine.has_integrators && !scenario->world->models.empty() &&
       scenario->world->integrator.kind != IntegratorKind::kRungeKutta3) {
     value.Fail("move by the integrator runge_kutta3 only on " + std::string(engine.name) +

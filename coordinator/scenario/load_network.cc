@@ -71,7 +71,7 @@ const std::vector<std::string>& LinkKeys() {
   return keys;
 }
 
-// Over what `link` says already.
+// Loads the values over those that `link` has already.
 LinkSpec LoadLink(const YamlMap& map, LinkSpec link) {
   if (const YamlValue* v = map.Find("latency")) link.latency = v->AsDuration();
   if (const YamlValue* v = map.Find("jitter")) link.jitter = v->AsDuration();
@@ -92,7 +92,7 @@ std::size_t FindRobot(const YamlValue& value, const Scenario& scenario) {
   return static_cast<std::size_t>(found - known.begin());
 }
 
-// Of one element of `links`: {between: [a, b], ...} or {from: a, to: b, ...}.
+// Loads one element of `links`: {between: [a, b], ...} or {from: a, to: b, ...}.
 void LoadLinkBetween(const YamlValue& value, const Scenario& scenario, NetworkSpec* network) {
   const YamlMap map = value.AsMap();
   std::vector<std::string> keys = LinkKeys();
@@ -135,7 +135,7 @@ std::string LoadAddress(const YamlValue& value) {
   return text;
 }
 
-// Of all robots; those that say none are numbered.
+// The addresses of all robots; robots that say none are numbered.
 std::vector<std::string> LoadAddresses(const YamlMap& top, const YamlValue& network) {
   const YamlMap robots = RobotsOf(top).AsMap();
   if (robots.entries().size() > kMostRobots) {

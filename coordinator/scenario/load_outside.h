@@ -1,4 +1,4 @@
-// `outside` of a client: what it waits for that is not of the run.
+// `outside` of a client: the things outside of the run that the client waits for.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ namespace tcs {
 // A list of names, or a map of `names`, `takes` and `patience`.
 OutsideSpec LoadOutside(const YamlValue& value, const Variables& variables);
 
-// The name as a scenario or a command line has it, relative to a folder: "" if it is one, or what
-// it must be.
+// Takes the name as a scenario or a command line has it, relative to a folder. Returns "" if `text`
+// is a name, or what a name must be.
 std::string TakeOutsideName(const std::string& text, const std::string& folder, std::string* name);
 
 }  // namespace tcs

@@ -76,7 +76,7 @@ std::size_t LoadCount(const YamlMap& map, const char* key, std::int64_t most,
   return value == nullptr ? otherwise : static_cast<std::size_t>(value->AsInteger(1, most));
 }
 
-// Of what looks ahead: less than half a turn.
+// The field of view of a sensor that looks ahead: less than half a turn.
 double LoadFieldOfView(const YamlMap& map, double otherwise_rad) {
   const YamlValue* value = map.Find("field_of_view");
   if (value == nullptr) return otherwise_rad;
@@ -88,7 +88,7 @@ double LoadFieldOfView(const YamlMap& map, double otherwise_rad) {
 LidarSpec LoadSweeping(const YamlMap& map, const Scenario& scenario, VirtualDuration period) {
   LidarSpec lidar{LoadMount(map, scenario)};
   lidar.rays = LoadCount(map, "rays", kMostRays, lidar.rays);
-  // All round no two rays look the same way.
+  // In a whole turn no two rays look the same way.
   lidar.last_rad = lidar.first_rad + kTurn * (1 - 1 / static_cast<double>(lidar.rays));
   if (const YamlValue* v = map.Find("angles")) {
     LoadAngles(*v, &lidar.first_rad, &lidar.last_rad);

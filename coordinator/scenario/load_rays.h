@@ -12,7 +12,7 @@ namespace tcs {
 // `on`, `at` and `frame`.
 Mount LoadMount(const YamlMap& map, const Scenario& scenario);
 
-// `range`: over what `reach` says already.
+// `range`: loaded over what `reach` has already.
 ReachSpec LoadReach(const YamlMap& map, ReachSpec reach);
 
 // The sensors that cast rays.

@@ -75,7 +75,7 @@ SchedulerPolicy LoadScheduler(const YamlValue& value) {
              Suggest(text, {"fixed_priority", "edf"}, "schedulers"));
 }
 
-// A controller that nobody knows the deadlines of would come last, behind all that have some.
+// A controller without a known deadline would come last, behind all that have one.
 void LoadDeadline(const YamlMap::Entry& entry, const YamlMap& map, SchedulerPolicy scheduler,
                   ClientSpec* client) {
   const YamlValue* deadline = map.Find("deadline");

@@ -40,8 +40,8 @@ int FirstOf(std::size_t model, const Scenario& scenario, auto parts) {
   return static_cast<int>(first);
 }
 
-// On the joint's parent, where the joint is; the thrust goes along its axis, or where it is fixed
-// along its z.
+// Puts the rotor on the joint's parent, where the joint is; the thrust goes along the joint's axis,
+// or along its z where the joint is fixed.
 void MountAt(const Joint& joint, Rotor* rotor) {
   rotor->link = joint.parent;
   rotor->frame = joint.origin;

@@ -1,5 +1,5 @@
-// Rotors of models: what they are, and the channels that command them. Internal to
-// LoadScenario: mistakes are thrown as ScenarioMistake.
+// Rotors of models: their properties, and the channels that command them. Internal to LoadScenario:
+// mistakes are thrown as ScenarioMistake.
 #pragma once
 
 #include "coordinator/scenario/scenario.h"

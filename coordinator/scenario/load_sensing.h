@@ -1,5 +1,5 @@
-// What sensors tell, what is wrong with it, and how commands act. Internal to
-// LoadScenario: mistakes are thrown as ScenarioMistake.
+// The fields that sensors tell, their errors, and how commands act. Internal to LoadScenario:
+// mistakes are thrown as ScenarioMistake.
 #pragma once
 
 #include <span>
@@ -26,8 +26,8 @@ struct NamedError {
 };
 void LoadFieldErrors(const YamlMap& map, std::span<const NamedError> fields);
 
-// `latency`, `axes`, `lag` and `limits`: what becomes of a command before it acts. Axes are the
-// world's, or the axes of `own`, a "body" or a "link".
+// `latency`, `axes`, `lag` and `limits`: the keys say what becomes of a command before it acts.
+// Axes are the world's, or the axes of `own`, a "body" or a "link".
 void LoadCommandEffect(const YamlMap& map, const std::string& own, CommandChannelSpec* command);
 
 }  // namespace tcs

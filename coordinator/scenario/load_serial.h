@@ -11,11 +11,11 @@
 
 namespace tcs {
 
-// The devices so far. Any number of sensors are on one, and at most one channel of commands; what
-// they say of its line is the same.
+// The devices so far. Any number of sensors are on a device, and at most one channel of commands;
+// all of these say the same of the device's line.
 class SerialPorts {
  public:
-  // The keys that say which one a channel is on, and how its line is.
+  // The keys that say which device a channel is on, and how the device's line is.
   static const std::vector<std::string>& Keys();
 
   SerialPort Load(const YamlMap& map, bool for_commands, const Scenario& scenario);

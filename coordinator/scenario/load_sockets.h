@@ -13,10 +13,10 @@
 
 namespace tcs {
 
-// The endpoints given so far: each belongs to one channel.
+// The endpoints given so far: each endpoint belongs to one channel.
 class UdpEndpoints {
  public:
-  // With a network each is at the address of a robot. It outlives this.
+  // With a network each endpoint is at the address of a robot. `network` outlives this.
   UdpEndpoints(Variables variables, const std::optional<NetworkSpec>& network)
       : variables_(std::move(variables)), network_(network) {}
 
@@ -37,7 +37,7 @@ class UdpEndpoints {
   std::vector<Use> uses_;
 };
 
-// The same for names of UNIX sockets.
+// The names of UNIX sockets given so far: each name belongs to one channel.
 class UnixNames {
  public:
   // With a network, names without a file are each robot's own.

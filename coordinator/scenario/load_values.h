@@ -1,4 +1,4 @@
-// What several sections of a scenario have. Internal to LoadScenario: mistakes are thrown as
+// Values that several sections of a scenario have. Internal to LoadScenario: mistakes are thrown as
 // ScenarioMistake.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace tcs {
 
-// A quaternion x, y, z, w of length 1, within 1e-3; it is normalised.
+// A quaternion x, y, z, w of length 1, within 1e-3; the result is normalised.
 std::array<double, 4> LoadOrientation(const YamlValue& value);
 
 }  // namespace tcs

@@ -27,7 +27,7 @@ std::vector<std::string> KeysOf(const auto& map) {
   return keys;
 }
 
-// The nearest of them, or so many that a sentence holds.
+// Suggests the nearest of the known names, or as many names as a sentence holds.
 std::string SuggestShortly(std::string_view written, std::vector<std::string> known,
                            std::string_view kind) {
   if (const auto nearest = Nearest(written, known)) return "did you mean '" + *nearest + "'?";
@@ -114,7 +114,7 @@ void MetricNames::AddSensor(const Scenario& scenario, std::size_t index) {
   }
   if (!sensor.instrument) {
     for (const int body : sensor.bodies) {
-      // One alone need not be named.
+      // A single body need not be named.
       const std::string& of = scenario.world->bodies[static_cast<std::size_t>(body)].name;
       const bool is_alone = sensor.bodies.size() == 1;
       for (const SensorField field : sensor.fields) {
@@ -152,11 +152,11 @@ void MetricNames::AddSensor(const Scenario& scenario, std::size_t index) {
              [&](const MagnetometerSpec&) { vector("magnetic_field"); },
              [&](const BarometerSpec&) { vector("pressure", 1); },
              [&](const ContactSpec&) { vector("touches", 1); },
-             [](const auto&) {}},  // what has hundreds of numbers, or none
+             [](const auto&) {}},  // sensors with hundreds of numbers, or none
       *sensor.instrument);
 }
 
-// As commands.csv calls them.
+// Adds the quantities by the names that commands.csv has for them.
 void MetricNames::AddCommands(const CommandChannelSpec& channel, std::size_t index) {
   const auto add = [&](const std::string& of, const std::string& field) {
     Add(channel.name, of.empty() ? field : of + "." + field,
@@ -187,7 +187,7 @@ std::string MetricNames::WhyUnknown(std::string_view name) const {
   const std::string what = fmt::format("there is no quantity '{}'; ", name);
   if (const auto nearest = Nearest(name, KeysOf(known_)))
     return what + "did you mean '" + *nearest + "'?";
-  // The longest thing that it begins with.
+  // The longest thing that `name` begins with.
   for (std::size_t dot = name.rfind('.'); dot != std::string_view::npos && dot > 0;
        dot = name.rfind('.', dot - 1)) {
     const auto thing = things_.find(name.substr(0, dot));

@@ -1,4 +1,4 @@
-// What expressions of metrics may name, in a scenario. Internal to LoadScenario.
+// The names that expressions of metrics may have in them, in a scenario. Internal to LoadScenario.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@ namespace tcs {
 class MetricNames final : public ExpressionNames {
  public:
   // Of a scenario whose world and channels are loaded. Quantities that are named are appended to
-  // `quantities`, each once; both outlive this.
+  // `quantities`, each once; `scenario` and `quantities` outlive this.
   MetricNames(const Scenario& scenario, std::vector<QuantitySpec>* quantities);
 
   [[nodiscard]] std::variant<std::size_t, std::string> ValueOf(std::string_view name) override;
@@ -33,9 +33,9 @@ class MetricNames final : public ExpressionNames {
 
   std::vector<QuantitySpec>& quantities_;
   std::map<std::string, QuantitySpec, std::less<>> known_;               // by whole name
-  std::map<std::string, std::vector<std::string>, std::less<>> things_;  // and what they have
-  std::map<std::string, QuantitySpec, std::less<>> places_;              // what has a place
-  std::map<std::string, std::size_t, std::less<>> numbers_;              // of those named
+  std::map<std::string, std::vector<std::string>, std::less<>> things_;  // by thing: what it has
+  std::map<std::string, QuantitySpec, std::less<>> places_;              // things that have a place
+  std::map<std::string, std::size_t, std::less<>> numbers_;              // of the named quantities
 };
 
 }  // namespace tcs

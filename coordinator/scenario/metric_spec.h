@@ -14,7 +14,7 @@
 
 namespace tcs {
 
-// What there is to know of how a body or a link moves, in the world's frame; SI units.
+// The quantities of how a body or a link moves, in the world's frame; SI units.
 inline constexpr std::array<std::string_view, 12> kMotionQuantities = {
     "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "roll", "pitch", "yaw"};
 
@@ -22,25 +22,25 @@ inline constexpr std::array<std::string_view, 12> kMotionQuantities = {
 struct QuantitySpec {
   enum class Kind { kBody, kLink, kJoint, kReading, kCommand };
   Kind kind = Kind::kBody;
-  // Of the body, link or joint, as Dynamics numbers them; of the sensor or the channel of commands,
-  // in the scenario's lists.
+  // The index of the body, link or joint, as Dynamics numbers them; of the sensor or the channel of
+  // commands, in the scenario's lists.
   std::size_t index = 0;
-  // Which of kMotionQuantities or kJointQuantities it is; of a reading, which component.
+  // The index in kMotionQuantities or kJointQuantities; of a reading, the component.
   std::size_t part = 0;
-  // Of a reading and a command: what it is of (a body, a joint, a rotor; empty: there is but one
-  // such thing), and which field.
+  // For a reading and a command: the thing that the quantity is of (a body, a joint, a rotor;
+  // empty: there is but one such thing), and the field.
   std::string of{}, field{};
 };
 
 struct MetricSpec {
   std::string name;
   MetricFigure asked = MetricFigure::kLast;
-  Expression expression;  // of Scenario::quantities; a condition if that is asked for
+  Expression expression;  // of Scenario::quantities; a condition if a condition is asked for
   VirtualDuration from{};
-  std::optional<VirtualDuration> until{};  // both included
+  std::optional<VirtualDuration> until{};  // `from` and `until` are included
   VirtualDuration every{};                 // 0: Scenario::csv_period
-  // Of what is expected: between what it is to stay. The first time is that of the first value
-  // that is not.
+  // For an expectation: the bounds between which the value is to stay. The first time is that of
+  // the first value outside the bounds.
   std::optional<double> least{}, most{};
 };
 

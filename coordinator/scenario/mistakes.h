@@ -1,8 +1,8 @@
 // The mistakes of a scenario, where all of them are asked for and not only the first.
 //
 // Internal to the loader. A reader that finds one goes on where it can: with the next entry of a
-// map, or with a harmless value in the place of one that cannot be read. What depends on a part
-// that is wrong is not held against the user.
+// map, or with a harmless value in the place of one that cannot be read. A thing that depends on a
+// wrong part is not held against the user.
 #pragma once
 
 #include <string>
@@ -14,16 +14,16 @@
 namespace tcs {
 
 struct ScenarioMistake {
-  std::string message;  // "FILE:LINE: …" or "--set KEY=VALUE: …"; empty: one of another mistake
+  std::string message;  // "FILE:LINE: …" or "--set KEY=VALUE: …"; empty: from another mistake
   Place place = {};
 };
 
 class Mistakes {
  public:
   void Add(const ScenarioMistake& mistake);
-  // The part of that name has a mistake for which it was left out.
+  // Notes that the part of that name has a mistake for which it was left out.
   void AddMissing(const std::string& name) { missing_.push_back(name); }
-  // True if the text may be meant for such a part, or for something in it.
+  // True if the text may be meant for a part that was left out, or for something in it.
   bool IsOfMissing(std::string_view text) const;
 
   bool empty() const { return all_.empty(); }

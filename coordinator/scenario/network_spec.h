@@ -11,7 +11,7 @@
 
 namespace tcs {
 
-// One direction between two robots.
+// The link of one direction between two robots.
 struct LinkSpec {
   static constexpr double kUnlimited = 0;
 
@@ -19,7 +19,7 @@ struct LinkSpec {
   VirtualDuration jitter{};               // the most that a packet takes longer than that
   double loss = 0;                        // the share of the packets that do not arrive
   double bandwidth_bps = kUnlimited;      // bits per second
-  std::int64_t queue_bytes = 256 * 1024;  // that may wait to be sent; what comes then is dropped
+  std::int64_t queue_bytes = 256 * 1024;  // that may wait to be sent; a packet beyond is dropped
 };
 
 struct NetworkSpec {

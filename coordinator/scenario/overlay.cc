@@ -10,11 +10,11 @@
 namespace tcs {
 namespace {
 
-// Nobody writes them deeper; who does would have them end with the stack.
+// Nobody writes overlays that are deeper; a deeper one would use up the stack.
 constexpr int kDeepest = 32;
 constexpr std::size_t kMostSettings = 10'000;  // aliases of aliases would be billions
 
-// On one line, as --set takes it.
+// The value on one line, as --set takes it.
 std::string InOneLine(const YAML::Node& value) {
   YAML::Emitter emitter;
   emitter.SetMapFormat(YAML::Flow);

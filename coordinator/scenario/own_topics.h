@@ -1,5 +1,6 @@
 // The topics whose other end is the simulation's: the topics of channels of the type `dds`, and the
-// clock's. They are in shared memory, where a program whose DDS uses sockets never meets them.
+// clock's. The topics are in shared memory, where a program whose DDS uses sockets never meets
+// them.
 #pragma once
 
 #include <string>

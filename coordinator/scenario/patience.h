@@ -11,10 +11,10 @@ namespace tcs {
 struct Patience {
   HostDuration silent = HostDuration::Seconds(5);       // without a call, under set costs
   HostDuration ideal = HostDuration::Seconds(10);       // on an ideal robot
-  VirtualDuration held = VirtualDuration::Seconds(10);  // under callback, of its own time
+  VirtualDuration held = VirtualDuration::Seconds(10);  // under callback, of the program's own time
 };
 
-// A scenario that says how long it is says so for all of them.
+// A patience that the scenario says holds for all three.
 inline Patience PatienceOf(const Scenario& scenario) {
   if (!scenario.patience) return {.held = std::max(Patience{}.held, scenario.duration)};
   return {*scenario.patience, *scenario.patience,

@@ -10,7 +10,7 @@ struct Place {
   int line = 0;        // of the file, from 1; 0: an option has none
 
   bool IsOption() const { return line == 0; }
-  // What a sentence begins with: "FILE:LINE: " or "--set KEY=VALUE: ".
+  // The beginning of a sentence: "FILE:LINE: " or "--set KEY=VALUE: ".
   std::string Prefix() const {
     return IsOption() ? source + ": " : source + ":" + std::to_string(line) + ": ";
   }

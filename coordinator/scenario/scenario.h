@@ -34,26 +34,26 @@ enum class ClientClass {
   kBestEffort,  // a planner: computes whenever nothing more urgent wants the processor
 };
 
-// How a client's DDS samples travel.
-// What programs read by rdtsc and rdtscp.
+// The counter that programs read by rdtsc and rdtscp.
 enum class CycleCounter {
   kVirtual,  // in step with the virtual time
   kHost      // the processor's own
 };
 
+// How a client's DDS samples travel.
 enum class DdsTransport {
   kEndpoints,  // in shared memory, from writer to reader, past the network; Cyclone's
   kSockets,    // as DDS sends them, by sockets; any vendor's
 };
 
-// What the folder that a client works in is to the run.
+// The folder that a client works in, as the run sees it.
 enum class ClientFolder {
-  kThere,  // it was there before
+  kThere,  // the folder was there before
   kMade,   // in the run's results, and made if it is not there
-  kFresh,  // its own in the run's results: there is nothing in it but a copy of `copied_folder`
+  kFresh,  // the client's own in the run's results: only a copy of `copied_folder` is in it
 };
 
-// What a client waits for that is outside of the run (calls/outside_waits.h).
+// The things outside of the run that a client waits for (calls/outside_waits.h).
 struct OutsideSpec {
   std::vector<std::string> names;  // absolute paths, '@' and abstract names, HOST:PORT
   VirtualDuration takes = VirtualDuration::Milliseconds(5);  // under --accounting fixed
@@ -68,27 +68,30 @@ struct ClientSpec {
   std::string copied_folder;  // absolute; empty: none
   ClientClass client_class = ClientClass::kBestEffort;
   int priority = 0;  // higher runs first on its robot
-  // After each release; kEarliestDeadlineFirst schedules by it. 0: none, or its period.
+  // The deadline after each release; kEarliestDeadlineFirst schedules by it. 0: none, or the
+  // client's period.
   VirtualDuration deadline{};
   std::map<std::string, std::string> environment;  // added to tcsim's own
   std::optional<int> body;                         // index into world.bodies
-  // What one intercepted call costs under --accounting fixed.
+  // The cost of one intercepted call under --accounting fixed.
   VirtualDuration fixed_call_cost = VirtualDuration::Microseconds(1);
-  // The same for one memory allocation; 0: nothing; none: as shm/set_costs.h has it.
+  // The cost of one memory allocation; 0: nothing; none: as shm/set_costs.h has it.
   std::optional<VirtualDuration> fixed_allocation_cost;
   bool patch_vdso = true;  // reading the clock past the C library's symbols is virtual, too
   CycleCounter cycle_counter = CycleCounter::kVirtual;
   DdsTransport dds = DdsTransport::kEndpoints;
-  // It is started then, and not before the client named `after` has ended, unless that is empty.
+  // The client is started at `start`, and not before the client named `after` has ended, unless
+  // `after` is empty.
   VirtualDuration start{};
   std::string after;
   OutsideSpec outside;
-  // How it is ended at the run's end: asked by the signal, and killed so much virtual time later.
+  // How the client is ended at the run's end: asked by the signal, and killed so much virtual time
+  // later.
   int stop_signal = SIGTERM;
   VirtualDuration stop_grace = VirtualDuration::Milliseconds(500);
 };
 
-// What its files in the run's results begin with.
+// The beginning of the names of the client's files in the run's results.
 inline std::string FileNameOf(const ClientSpec& client) {
   std::string name = client.name;
   std::replace(name.begin(), name.end(), '/', '-');
@@ -129,7 +132,7 @@ struct UnixName {
 // A serial device of a robot's, on a line that takes time.
 struct SerialPort {
   std::string robot;
-  std::string path;  // that its programs open, absolute: "/dev/ttyUSB0"
+  std::string path;  // absolute, as the robot's programs open it: "/dev/ttyUSB0"
   int baud = 115'200;
   int frame_bits = 10;  // of a byte, with start, parity and stop: 8N1
   int fifo = 1;         // bytes of a line that the program gets at a time
@@ -152,14 +155,14 @@ struct DdsCommandEnd {
   dds::CommandMessage message = dds::CommandMessage::kWrench;
 };
 
-// What carries a channel: an alternative for each transport (coordinator/channel/).
+// The transport that carries a channel: an alternative for each (coordinator/channel/).
 using SensorEnd =
     std::variant<UdpEndpoint, UnixName, SerialPort, DdsSensorEnd>;  // where readings are sent
 using CommandEnd =
     std::variant<UdpEndpoint, UnixName, SerialPort, DdsCommandEnd>;  // where commands come in
 
-// What a sensor can tell of a body. The first four are in the world's frame, the others in the
-// body's, as a gyroscope and an accelerometer feel them.
+// A quantity that a sensor can tell of a body. The first four quantities are in the world's frame,
+// the others in the body's, as a gyroscope and an accelerometer feel them.
 enum class SensorField {
   kPosition,
   kOrientation,
@@ -173,16 +176,16 @@ inline constexpr std::size_t kSensorFields = static_cast<std::size_t>(SensorFiel
 // As in scenarios and in JSON: "position".
 const char* NameOf(SensorField field);
 
-// What is wrong with the readings of a sensor, drawn from the scenario's seed. Units are the
-// field's; for the orientation, radians about the body's axes.
+// The error of the readings of a sensor, drawn from the scenario's seed. Units are the field's; for
+// the orientation, radians about the body's axes.
 struct FieldError {
   double noise = 0;              // standard deviation, of each reading anew
   double bias_deviation = 0;     // standard deviation of a bias that is drawn once a run
-  std::array<double, 3> bias{};  // beside that one
+  std::array<double, 3> bias{};  // beside the drawn bias
 
   // A bias that is drawn once is as unknown as the noise.
   double Variance() const { return noise * noise + bias_deviation * bias_deviation; }
-  // Nothing is wrong.
+  // True if nothing is wrong with the readings.
   bool IsExact() const {
     return noise == 0 && bias_deviation == 0 && bias == std::array<double, 3>{};
   }
@@ -202,26 +205,26 @@ struct JointGroup {
   std::string model;
   std::vector<int> joints;         // as Dynamics numbers them
   std::vector<std::string> names;  // of each
-  // Of the model's joints that follow others, which nobody drives, but which commands may name.
+  // The model's joints that follow others, which nobody drives, but which commands may name.
   std::vector<std::string> followers{};
 };
 
-// The firmware of a robot with driven wheels: what comes in is how fast it is to go.
+// The firmware of a robot with driven wheels: commands say how fast the robot is to go.
 struct WheelDriveSpec {
   WheelBase base;
-  std::size_t left = 1;       // of the joints, so many are wheels on the left; they come first
+  std::size_t left = 1;       // of the joints, so many, the first, are wheels on the left
   double most_radps = 0;      // of any wheel
-  VirtualDuration timeout{};  // after which without a command it stops; 0: never
+  VirtualDuration timeout{};  // the robot stops after so long without a command; 0: never
 };
 
 // Joints that a channel drives, and with what.
 struct JointDriveSpec {
   JointGroup group;
-  JointQuantity quantity = JointQuantity::kEffort;  // what a number without a name is
+  JointQuantity quantity = JointQuantity::kEffort;  // the quantity of a number without a name
   std::vector<JointGains> gains;                    // of each joint
-  std::vector<JointLimits> limits{};                // likewise: what is wanted is kept within them
+  std::vector<JointLimits> limits{};                // likewise: wanted values are kept within them
   VirtualDuration lag{};                            // Joint::drive_lag of all of them
-  std::optional<WheelDriveSpec> wheels;             // which they are, or
+  std::optional<WheelDriveSpec> wheels;             // which the joints are, or
   // Trajectories come in, and the servos have new setpoints so often.
   std::optional<VirtualDuration> setpoint_period;
 };
@@ -248,7 +251,7 @@ struct SensorChannelSpec {
   std::vector<int> bodies;           // indices into world.bodies; at least one, or
   std::optional<JointGroup> joints;  // or
   std::optional<InstrumentSpec> instrument;
-  MeasurementErrors measurement_errors{};  // of that; seed, losses and lateness are in `errors`
+  MeasurementErrors measurement_errors{};  // of the instrument; the rest is in `errors`
   VirtualDuration period = VirtualDuration::Milliseconds(10);
   VirtualDuration latency{};
   SensorErrors errors;
@@ -262,12 +265,12 @@ inline constexpr std::array<double, 3> kNoWrenchLimit = {std::numeric_limits<dou
                                                          std::numeric_limits<double>::infinity(),
                                                          std::numeric_limits<double>::infinity()};
 
-// What comes in are wrenches for `body`, applied at the virtual time of the send plus `latency`.
+// A channel of wrenches for `body`, applied at the virtual time of the send plus `latency`.
 struct CommandChannelSpec {
   std::string name;
   int body = 0;                          // or one of these, of a model:
-  std::optional<LinkTarget> link;        // which they push
-  std::optional<JointDriveSpec> joints;  // which they drive
+  std::optional<LinkTarget> link;        // which the commands push
+  std::optional<JointDriveSpec> joints;  // which the commands drive
   std::optional<RotorDriveSpec> rotors;
   VirtualDuration latency{};
   // The most of each component, either way.
@@ -299,13 +302,13 @@ struct Scenario {
   std::vector<std::string> set;  // what --overlay and --set have put in the file's stead
   VirtualDuration duration = VirtualDuration::Seconds(10);
   VirtualDuration drift_bound = VirtualDuration::Milliseconds(1);
-  std::optional<HostDuration> patience;  // none: by why it has to be patient (patience.h)
+  std::optional<HostDuration> patience;  // none: by why the run has to be patient (patience.h)
   std::uint64_t seed = 1;
   std::optional<WorldSpec> world;                 // none: no dynamics
-  std::map<std::string, std::string> urdf_files;  // of the models that come from such
-  // Of these what xacro has made of the file, where it has.
+  std::map<std::string, std::string> urdf_files;  // of the models that come from such files
+  // For these models, what xacro has made of the file, where it has.
   std::map<std::string, std::string> urdf_expanded;
-  // Of these the folders, in `packages`, that their meshes' packages may be in.
+  // For these models, the folders in `packages` that their meshes' packages may be in.
   std::map<std::string, std::vector<std::string>> urdf_packages;
   std::vector<RobotSpec> robots;
   std::optional<NetworkSpec> network;  // none: all robots share the host's
@@ -317,14 +320,14 @@ struct Scenario {
   VirtualDuration csv_period =
       VirtualDuration::Milliseconds(10);  // of the body states written to DIR
   bool csv_contacts = false;              // contact forces are written, too
-  std::vector<MetricSpec> metrics;        // what the run is to be measured by
+  std::vector<MetricSpec> metrics;        // the metrics that measure the run
   std::vector<ExpectationSpec> expectations;
-  std::size_t not_judged = 0;            // how many more begin after the end that was asked for
-  std::vector<MetricSpec> kept;          // what some of these are of, in the order of their numbers
-  std::vector<QuantitySpec> quantities;  // that metrics and these are of
-  // What can be run and is hardly what was meant: a sentence each, with its place.
+  std::size_t not_judged = 0;            // how many more expectations begin after the end asked for
+  std::vector<MetricSpec> kept;          // what some expectations are of, by their number
+  std::vector<QuantitySpec> quantities;  // that `metrics` and `kept` are of
+  // Things that can be run and are hardly what was meant: a sentence each, with its place.
   std::vector<std::string> warnings;
-  // What a warning says of one thing, of each: for `tcsim check -v`.
+  // What a warning says of one thing, said of each such thing: for `tcsim check -v`.
   std::vector<std::string> details;
 };
 

@@ -34,8 +34,8 @@ void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scen
 void LoadChains(const YamlMap& top, Scenario* scenario);
 // `metrics`. Reads the world and the channels from `scenario`.
 void LoadMetrics(const YamlMap& top, Scenario* scenario);
-// `expect`. Reads all that the others have loaded from `scenario`.
-// `is_shortened`: the run ends before its file's `duration`; see LeaveOutLater.
+// `expect`. Reads all that the other sections have loaded from `scenario`. `is_shortened`: the run
+// ends before its file's `duration`; see LeaveOutLater.
 void LoadExpect(const YamlMap& top, bool is_shortened, Scenario* scenario);
 
 // The seed of the part with this name, made from the scenario's seed: each part has random numbers
@@ -48,7 +48,7 @@ int FindBody(const YamlValue& value, const Scenario& scenario);
 // The indices of the bodies that the list `value` names, each once.
 std::vector<int> FindBodies(const YamlValue& value, const Scenario& scenario);
 
-// One over a rate in Hz.
+// The period of a rate in Hz, which is one over the rate.
 VirtualDuration LoadPeriod(const YamlValue& value);
 
 }  // namespace tcs

@@ -13,8 +13,8 @@ namespace {
 
 std::string Quote(std::string_view text) { return "'" + std::string(text) + "'"; }
 
-// The user's own names are the keys of these maps: one that is not there is a slip of the fingers,
-// not a thing to be made bit by bit.
+// The user's own names are the keys of these maps: a name that is not there is a slip of the
+// fingers, not a thing to be made bit by bit.
 bool HoldsNames(const std::string& path) {
   if (path == "bodies" || path == "robots" || path == "channels") return true;
   constexpr std::string_view kRobots = "robots.", kClients = ".clients";
@@ -30,12 +30,12 @@ std::string Shown(std::string option) {
   return "--set " + option;
 }
 
-// What follows a key in a path: nothing, ".MORE" or "[5]…".
+// True for text that may follow a key in a path: nothing, ".MORE" or "[5]…".
 bool EndsKey(std::string_view rest) { return rest.empty() || rest[0] == '.' || rest[0] == '['; }
 
 }  // namespace
 
-// One of them at work. Whatever it changes it copies, from the top down: nodes of the file may be
+// Applies one setting. Whatever this changes it copies, from the top down: nodes of the file may be
 // shared, for YAML knows aliases.
 class SetOption {
  public:
@@ -135,7 +135,7 @@ class SetOption {
     return copy;
   }
 
-  // The key that `rest` begins with: the longest of those that are there, or else what stands
+  // The key that `rest` begins with: the longest of the keys that are there, or else the text
   // before the next dot.
   std::string KeyIn(const YAML::Node& map, const std::string& path, std::string_view rest) const {
     std::optional<std::string> longest;

@@ -1,8 +1,8 @@
 // --set KEY=VALUE: a scenario's tree with one of its keys added, replaced or removed.
 //
-// KEY is the way to it from the top, as the loader's own sentences write it: keys joined by dots,
-// elements of lists by number ("command.5" or "command[5]"). Names may have dots themselves; of the
-// names that fit the longest is meant. VALUE is YAML; null removes the key.
+// KEY is the way to the key from the top, as the loader's own sentences write it: keys joined by
+// dots, elements of lists by number ("command.5" or "command[5]"). Names may have dots themselves;
+// of the names that fit the longest is meant. VALUE is YAML; null removes the key.
 //
 // Internal to the loader: mistakes are thrown as ScenarioMistake.
 #pragma once
@@ -15,14 +15,14 @@
 
 namespace tcs {
 
-// One key with its value, as a text "KEY=VALUE", and where it was given: "--set KEY=VALUE", or
+// A key with its value, as a text "KEY=VALUE", and where it was given: "--set KEY=VALUE", or
 // "FILE:LINE" of an overlay.
 struct Setting {
   std::string text;
   std::string origin;
 };
 
-// What --set gives.
+// The settings that --set gives.
 std::vector<Setting> SettingsOfOptions(const std::vector<std::string>& options);
 
 class SetOptions {
@@ -31,7 +31,7 @@ class SetOptions {
   // nodes the new tree shares.
   YAML::Node Apply(const YAML::Node& root, const std::vector<Setting>& settings);
 
-  // The setting's origin if that is where `node` of the new tree comes from; null if it is the
+  // The origin of the setting that `node` of the new tree comes from; null if `node` comes from the
   // scenario file.
   const std::string* OriginOf(const YAML::Node& node) const;
 

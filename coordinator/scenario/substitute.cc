@@ -31,7 +31,8 @@ std::string Lookup(const YamlValue& value, const std::string& name, const Variab
 
 std::string RunName(std::uint32_t run) { return fmt::format("{:08x}", run); }
 
-// Of as many digits whatever the run: how long a program's arguments are, its memory shows.
+// The address has as many digits whatever the run: a program's memory shows how long its arguments
+// are.
 std::string LoopbackAddressOf(std::uint32_t run) {
   constexpr std::uint32_t kFirst = 100, kCount = 156;
   const auto part = [&run] {

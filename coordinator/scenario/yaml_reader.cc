@@ -35,7 +35,7 @@ int LineOf(const YAML::Node& node, int otherwise) {
   return mark.is_null() ? otherwise : mark.line + 1;
 }
 
-// Notes where what it is told of begins.
+// Notes where a document that it is told of begins.
 class FirstPlace : public YAML::EventHandler {
  public:
   int line() const { return line_; }
@@ -70,7 +70,7 @@ class FirstPlace : public YAML::EventHandler {
   bool has_node_ = false;
 };
 
-// Not by YAML::LoadAll, which never comes to an end of what follows a document and is none.
+// YAML::LoadAll is not used: it never comes to an end of text that follows a document and is none.
 std::optional<int> LineOfSecondDocument(const std::string& text) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
@@ -84,8 +84,8 @@ int LineOfValue(const YAML::Node& node, int key_line) {
   return node.IsScalar() ? LineOf(node, key_line) : key_line;
 }
 
-// Without the middle, where a text of the file makes it endless: it begins with what is wrong and
-// ends with how to mend it. Between characters of UTF-8.
+// Leaves out the middle of a sentence that a text of the file makes endless: a sentence begins with
+// what is wrong and ends with how to mend it. The cuts are between characters of UTF-8.
 std::string Readable(std::string_view sentence) {
   constexpr std::size_t kMost = 2'000, kFirst = 1'000, kLast = 500;
   if (sentence.size() <= kMost) return std::string(sentence);

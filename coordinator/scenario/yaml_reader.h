@@ -24,7 +24,7 @@ namespace tcs {
 
 class YamlMap;
 
-// What all values of a file share.
+// The state that all values of a file share.
 struct YamlReading {
   SetOptions options;            // knows which nodes are not the file's
   Mistakes* mistakes = nullptr;  // null: the first mistake is thrown
@@ -42,18 +42,18 @@ class YamlValue {
   // The name for a sentence.
   std::string Described() const { return name_.empty() ? "the scenario" : name_; }
 
-  // The same value; its mistakes are reported for another place.
+  // This value, with its mistakes reported for another place.
   YamlValue At(const Place& place) const { return YamlValue(place, name_, node_, reading_); }
 
   // Throws "PLACE: NAME SENTENCE".
   [[noreturn]] void Fail(std::string_view sentence) const;
-  // The same about a part of the scenario that this names; nothing is held against one that is left
-  // out for its own mistake.
+  // Fails about a part of the scenario that this value names; nothing is held against a part that
+  // is left out for its own mistake.
   [[noreturn]] void FailAbout(std::string_view part, std::string_view sentence) const;
   // Throws "PLACE: SENTENCE".
   [[noreturn]] void FailPlainly(std::string_view sentence) const;
-  // Where all mistakes are asked for, the mistakes that `read` throws are noted, and what it has
-  // not read is left out. False if there was one.
+  // Where all mistakes are asked for, the mistakes that `read` throws are noted, and what `read`
+  // has not read is left out. False if there was a mistake.
   template <class Read>
   bool Try(Read read) const {
     Mistakes* mistakes = reading_->mistakes;
@@ -69,7 +69,7 @@ class YamlValue {
       return false;
     }
   }
-  // The same for what `read` reads as the part `name` of the scenario.
+  // Calls Try for what `read` reads as the part `name` of the scenario.
   template <class Read>
   void TryPart(const std::string& name, Read read) const {
     if (!Try(read)) reading_->mistakes->AddMissing(name);
@@ -98,13 +98,13 @@ class YamlValue {
 
  private:
   std::string Scalar(std::string_view expected) const;
-  // What `read` gives; where all mistakes are asked for and it has one, something harmless.
+  // The value that `read` gives; where all mistakes are asked for and `read` has one, `harmless`.
   template <class Value, class Read>
   Value OrElse(Value harmless, Read read) const {
     Try([&] { harmless = read(); });
     return harmless;
   }
-  // The place of a node in this one that stands on `line` if it stands in the file at all.
+  // The place of a node in this value; the node is on `line` if it is in the file at all.
   Place PlaceOf(const YAML::Node& node, int line) const;
 
   Place place_;
@@ -151,8 +151,8 @@ class YamlMap {
 // The YAML `text` of `file`; throws ScenarioMistake if it is not one YAML document.
 YAML::Node ParseDocument(const std::string& file, const std::string& text);
 
-// The same with `settings` applied to it (see set_option.h); throws ScenarioMistake also if it has
-// no such place, or is empty.
+// Parses the YAML `text` of `file` with `settings` applied to it (see set_option.h); throws
+// ScenarioMistake also if the text has no such place, or is empty.
 YamlValue ParseYaml(const std::string& file, const std::string& text,
                     const std::vector<Setting>& settings, Mistakes* mistakes = nullptr);
 

@@ -6,7 +6,8 @@ namespace tcs {
 
 namespace {
 
-// Whether the process's DDS samples are being handed over: whom this wakes, a sample has woken.
+// Whether the process's DDS samples are being handed over: a sample has woken the threads that this
+// wakes.
 bool IsTakingSamples(const Process& process) {
   const Task* deliverer = process.deliverer;
   return deliverer != nullptr && deliverer->Awaits<awaited::Messages>() == nullptr;
@@ -24,8 +25,8 @@ ReleaseCause CauseOf(const Task& task, shm::WakeReason reason) {
   return for_child ? ReleaseCause::kChild : ReleaseCause::kInput;
 }
 
-// Of the process's periodic timers: the earliest expiry that a thread which looked then, and looks
-// again at `now_ns`, cannot have seen before.
+// Of the process's periodic timers: the earliest expiry that a thread which looked at `looked_ns`,
+// and looks again at `now_ns`, cannot have seen before.
 std::int64_t FirstExpiryAfter(const Process& process, std::int64_t looked_ns, std::int64_t now_ns) {
   std::int64_t first_ns = now_ns;
   for (const ProcessTimers::Armed& timer : process.timers.AllArmed()) {
@@ -61,7 +62,8 @@ void Activations::TellOfBeginning(const Task& task, std::int64_t at_ns) const {
   if (const auto who = answers_->WhoIs(task)) answers_->book().Ready(*who, at_ns);
 }
 
-// What began with a receipt was released when that arrived, as soon as this is known.
+// An activation that began with a receipt was released when the receipt's data arrived, as soon as
+// that time is known.
 void Activations::FindRelease(Activation& activation, const Task& task, unsigned receipt) const {
   if (answers_ == nullptr || has_own_clocks_ || activation.cause != ReleaseCause::kInput) return;
   activation.release_ns = answers_->book().ReleaseOf(task.order, receipt, activation.release_ns);
@@ -76,7 +78,7 @@ void Activations::TellOfEnd(const Task& task, unsigned receipt, std::int64_t end
                          charged_ns - task.activation.charged_ns);
 }
 
-// False: what it waits for ends its activation.
+// False: the thread's wait ends its activation.
 bool Activations::TellOfPause(const Task& task, std::int64_t at_ns, std::int64_t charged_ns) const {
   if (answers_ == nullptr || !pause_of_) return false;
   const auto who = answers_->WhoIs(task);
@@ -106,7 +108,7 @@ void Activations::Write(const Task& task, const Activation& activation, std::int
              work);
 }
 
-// It did not wait, and is at its next activation all the same (shm/receipts.h).
+// The thread did not wait, and is at its next activation all the same (shm/receipts.h).
 void Activations::Next(Task& task, ProgramTime now, VirtualDuration charged,
                        const shm::WorkCounts& work, const Receipt& receipt) {
   Activation& activation = task.activation;
@@ -115,7 +117,7 @@ void Activations::Next(Task& task, ProgramTime now, VirtualDuration charged,
   const std::int64_t now_ns = std::max(now.ns(), activation.start_ns);
   const std::int64_t charged_ns = std::max(charged.ns(), activation.charged_ns);
   Write(task, activation, now_ns, charged_ns, work);
-  // The one that ends began with the receipt before.
+  // The activation that ends began with the receipt before.
   TellOfEnd(task, receipt.number == 0 ? 0 : receipt.number - 1, now_ns, charged_ns);
   ++task.activations;
   const std::int64_t before_ns = activation.start_ns;
@@ -157,18 +159,18 @@ void Activations::ReceivedRaw(Task& task, bool of_timer) {
 void Activations::Idles(Task& task, bool dies) {
   const std::int64_t now = OwnNow(task).ns();
   task.process->expired = VirtualTime::Never();
-  if (task.slot < 0) {  // it never began
+  if (task.slot < 0) {  // the thread never began
     if (answers_ != nullptr) answers_->Dies(task);
     return;
   }
   if (task.activation.start_ns < 0) task.activation.start_ns = task.activation.release_ns;
   FindRelease(task.activation, task, 0);
-  // What a switch takes is an estimate: one shorter than it gives back what was charged too much.
-  // No activation is charged less than nothing for that; those that follow are charged less.
+  // The time of a switch is an estimate: a switch shorter than it gives back what was charged too
+  // much. No activation is charged less than nothing for that; later activations are charged less.
   const std::int64_t charged = std::max(task.charged.ns(), task.activation.charged_ns);
   Write(task, task.activation, std::max(now, task.activation.start_ns), charged, task.work);
   const std::int64_t end_ns = std::max(now, task.activation.start_ns);
-  // What a program does at its end, nobody waits for.
+  // Nobody waits for what a program does at its end.
   const bool pauses = !dies && TellOfPause(task, end_ns, charged);
   if (!dies && !pauses) TellOfEnd(task, 0, end_ns, charged);
   if (answers_ != nullptr && !pauses) {

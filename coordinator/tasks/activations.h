@@ -2,10 +2,10 @@
 // docs/RESULTS.md).
 //
 // An activation begins when a wait ends, and ends with the next wait. A thread that finds its next
-// datagram there already never waits: what it receives begins the next one (shm/receipts.h), which
-// was released when the datagram arrived, as far as that is known (answers/answer_book.h). Works
-// on the fields of a task that say so, and on what the thread's slot says of receipts. For the
-// coordinator's thread only.
+// datagram there already never waits: the receipt begins the next activation (shm/receipts.h),
+// which was released when the datagram arrived, as far as that is known (answers/answer_book.h).
+// Works on the fields of a task that tell of activations, and on what the thread's slot says of
+// receipts. For the coordinator's thread only.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +26,10 @@ class Activations {
   // `has_own_clocks`: a program's clock may be ahead of the world's (--sync callback).
   explicit Activations(bool has_own_clocks) : has_own_clocks_(has_own_clocks) {}
 
-  // What a thread that begins to wait waits for in the midst of its work; none: it has done that.
+  // The pause of a thread that begins to wait in the midst of its work; none: the work is done.
   using PauseOf = std::function<std::optional<AnswerBook::Pause>(const Task&)>;
-  // Is told of each that begins, pauses or ends. Null: nobody; it outlives this.
+  // `answers` is told of each activation that begins, pauses or ends; null: nobody is told.
+  // `answers` outlives this.
   void Tell(AnswerFeed* answers, PauseOf pause_of) {
     answers_ = answers;
     pause_of_ = std::move(pause_of);
@@ -40,18 +41,19 @@ class Activations {
   void Flush() { log_.Flush(); }
   [[nodiscard]] std::string Close() { return log_.Close(); }
 
-  // It is there, for the first time.
+  // The thread is there, for the first time.
   void Starts(const Task& task) const { TellOfBeginning(task, task.activation.release_ns); }
-  // The thread's wait, which it is still in, ends for that reason. What was due before its robot
-  // could look at it was due then.
+  // The thread's wait, which it is still in, ends for that reason. An event that was due before the
+  // thread's robot could look at it counts from when it was due.
   void Released(Task& task, shm::WakeReason reason, VirtualTime at) const;
-  // It waits again, or dies.
+  // The thread waits again, or dies.
   void Idles(Task& task, bool dies = false);
-  // What it has received since its dispatch without having waited, up to `now` on its clock.
+  // Takes note of what the thread has received since its dispatch without having waited, up to
+  // `now` on its clock.
   void TakeReceipts(Task& task, ProgramTime now);
-  // The same of a call that the kernel is to carry out, and that finds something there.
+  // The same for a call that the kernel is to carry out, and that finds something there.
   void ReceivedRaw(Task& task, bool of_timer);
-  // The run ends in the midst of it.
+  // The run ends in the midst of the thread's activation.
   void IsCutOff(const Task& task, VirtualTime end) const;
 
  private:
@@ -61,9 +63,9 @@ class Activations {
   bool TellOfPause(const Task& task, std::int64_t at_ns, std::int64_t charged_ns) const;
   void TellOfBeginning(const Task& task, std::int64_t at_ns) const;
   struct Receipt {
-    unsigned number = 0;  // since the last stop, from 1 on; 0: it has none
+    unsigned number = 0;  // since the last stop, from 1 on; 0: none
     shm::Receipts::Of of = shm::Receipts::Of::kMessage;
-    std::optional<std::int64_t> release_ns{};  // if the thread has said that
+    std::optional<std::int64_t> release_ns{};  // if the thread has told of it
   };
   void Write(const Task& task, const Activation& activation, std::int64_t end_ns,
              std::int64_t charged_ns, const shm::WorkCounts& work);
@@ -76,7 +78,7 @@ class Activations {
   ActivationLog log_;
 };
 
-// What the thread has done according to `seen`, the shim's count of it.
+// The work that the thread has done according to `seen`, the shim's count of it.
 inline shm::WorkCounts WithTrapped(const Task& task, const shm::WorkCounts& seen) {
   return {seen.calls + task.trapped_calls, seen.locks};
 }

@@ -28,12 +28,12 @@ class AnswerFeed {
   // Whether the client is tcsim's own, of which results do not tell.
   bool IsOurs(int client) const { return ours_ >= 0 && client >= ours_; }
 
-  // None of a thread that is no client's.
+  // None for a thread that is no client's.
   std::optional<AnswerBook::Who> WhoIs(const Task& task) const;
-  // Of a client's first thread, without a number. By its name: ROBOT/CLIENT.
+  // The same for a client's first thread, without a number. By the client's name: ROBOT/CLIENT.
   std::optional<AnswerBook::Who> WhoIs(const std::string& client) const;
   std::optional<AnswerBook::Who> WhoIs(const ClientSpec& client) const;
-  // Its number may be another thread's from now on.
+  // The thread's number may be another thread's from now on.
   void Dies(const Task& task);
   AnswerBook& book() { return book_; }
   ChainBook& chains() { return chains_; }
@@ -43,17 +43,18 @@ class AnswerFeed {
  private:
   void OpenChains(const Scenario& scenario);
 
-  // Whose a thread was when it was last asked for, which it is several times in each of its turns.
+  // The client that had a thread when it was last asked for, which happens several times in each of
+  // the thread's turns.
   struct Known {
-    const Process* process = nullptr;  // null: nobody's, as far as is known
+    const Process* process = nullptr;  // null: no client's, as far as is known
     int client = 0;
   };
   AnswerBook book_;
   ChainBook chains_;
   std::unordered_map<const ClientSpec*, int> clients_;
   std::map<std::string, int> names_;
-  // The gateway's first number, the last but one of all: what it knows of sensors is not what its
-  // commands are made of, so it counts as two. None: there is no gateway.
+  // The gateway's first number, the last but one of all: the gateway's commands are not made of
+  // what it knows of sensors, so it counts as two. -1: there is no gateway.
   int ours_ = -1;
   mutable std::vector<Known> known_;  // by thread, as AnswerBook::Who has it
 };

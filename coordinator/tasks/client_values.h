@@ -27,7 +27,8 @@ bool Write(const Task& task, std::uint64_t address, const T& value) {
   return WriteMemory(task.process->pid, address, &value, sizeof value);
 }
 
-// As a timeout: what is too far off is for less than ever, but for more than any run lasts.
+// The time as a timeout: one that is too far off is for less than ever, but for more than any run
+// lasts.
 inline std::int64_t ToTimeoutNs(const timespec& t) { return std::min(ToNs(t), shm::kFarNs); }
 
 }  // namespace tcs

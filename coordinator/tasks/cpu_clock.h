@@ -10,8 +10,8 @@
 
 namespace tcs {
 
-// What the thread's own CPU clock shows; -1 if it cannot be read any more. The descriptor that it
-// takes is kept in the task.
+// The time on the thread's own CPU clock; -1 if the clock cannot be read any more. The descriptor
+// that the clock takes is kept in the task.
 std::int64_t HostClockOf(Task& task);
 
 inline Meter::CpuClock CpuClockOf(Task& task) {

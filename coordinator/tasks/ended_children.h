@@ -1,5 +1,5 @@
-// What each of a process's children had been charged when it ended, as long as its parent may ask:
-// wait4 tells of it. Pure.
+// The time that each of a process's children had been charged when it ended, as long as its parent
+// may ask: wait4 tells of it. Pure.
 #pragma once
 
 #include <sys/types.h>
@@ -12,12 +12,13 @@ namespace tcs {
 
 class EndedChildren {
  public:
-  // With the children that it has had itself. The kernel gives its number away again.
+  // The charge includes the children that the child has had itself. The kernel gives the child's
+  // number away again.
   void Ended(pid_t pid, std::int64_t charged_ns) {
     if (children_.size() == kMost) children_.pop_front();
     children_.push_back({pid, charged_ns});
   }
-  // -1 where it is not known any more.
+  // -1 where the charge is not known any more.
   std::int64_t ChargedNs(pid_t pid) const {
     const auto last = std::find_if(children_.rbegin(), children_.rend(),
                                    [pid](const Child& child) { return child.pid == pid; });

@@ -1,4 +1,4 @@
-// When something happens to a thread, and whose doing it is. Whoever wakes somebody says it.
+// When something happens to a thread, and whose doing it is. A caller that wakes a thread says it.
 #pragma once
 
 #include "shm/time_kinds.h"

@@ -15,7 +15,7 @@
 
 namespace tcs {
 
-// What a descriptor is.
+// The kinds of descriptors.
 enum class Tag : std::uint32_t {
   kPipe,
   kListener,
@@ -35,7 +35,7 @@ enum class Tag : std::uint32_t {
   kCount
 };
 
-// Of whom or what the events at a descriptor are. Fits into what epoll keeps with it.
+// The subject of the events at a descriptor. Fits into the data that epoll keeps with a descriptor.
 struct Subject {
   static constexpr std::uint32_t kNumberMask = 0xffffff;
 
@@ -46,10 +46,10 @@ struct Subject {
   bool operator==(const Subject&) const = default;
 };
 
-// What handlers have found, together.
+// The findings of handlers, together.
 struct PollOutcome {
   bool stops_running = false;   // the running thread has to be stopped
-  bool wakes_others = false;    // somebody may act now who could not before
+  bool wakes_others = false;    // a thread may act now that could not before
   bool blocks_running = false;  // the kernel holds the running thread
   bool looks_again = false;     // there may be more by now that belongs to this moment
   PollOutcome& operator|=(const PollOutcome& other);
@@ -69,7 +69,7 @@ class Reactor {
   // False: errno is set (ENOENT, EEXIST and the like, as epoll_ctl has it).
   bool Add(int fd, std::uint32_t events, const Subject& subject);
   bool Modify(int fd, std::uint32_t events, const Subject& subject);
-  // Nothing happens if it is not there.
+  // Nothing happens if the descriptor is not there.
   void Remove(int fd);
 
   // Waits until there is an event, at most so long (negative: without limit), and
@@ -80,9 +80,9 @@ class Reactor {
   // The number of the look that the next wait takes, or completes: a look is all that the kernel
   // has at an instant, in as many waits as that takes.
   std::uint64_t next_look() const { return next_look_; }
-  // True if something has come since that the next wait takes.
+  // True if an event has come since that the next wait takes.
   bool HasMore() const;
-  // Has what is queued handled, all of it at that moment.
+  // Has the queued events handled, all of them at that moment.
   PollOutcome Handle(EventTime when);
 
  private:
@@ -97,11 +97,11 @@ class Reactor {
   bool is_full_ = false, is_handling_ = false;
   std::uint64_t next_look_ = 1;
   std::array<Queued, kAtOnce> queue_;
-  std::size_t count_ = 0;  // in it
+  std::size_t count_ = 0;  // in queue_
   std::array<Handler, static_cast<std::size_t>(Tag::kCount)> handlers_;
 };
 
-// Of what may concern anybody.
+// The outcome of an event that may concern anybody.
 inline constexpr PollOutcome kConcernsAll{.stops_running = true, .wakes_others = true};
 
 }  // namespace tcs

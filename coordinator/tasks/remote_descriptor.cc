@@ -68,10 +68,10 @@ bool RemoteDescriptor::HasRoomFor(std::int64_t bytes) const {
   if (getsockopt(fd(), SOL_SOCKET, SO_MEMINFO, memory, &size) != 0) return false;
   const std::int64_t whole = memory[SK_MEMINFO_SNDBUF];
   const std::int64_t used = std::max(memory[SK_MEMINFO_WMEM_ALLOC], memory[SK_MEMINFO_WMEM_QUEUED]);
-  // With less than a quarter used it is for something else that poll says no, as that there is no
-  // connection yet (unix_writable has the quarter, others more).
+  // With less than a quarter used poll says no for another reason, as that there is no connection
+  // yet (unix_writable has the quarter, others more).
   if (used * 4 <= whole || used >= whole) return false;
-  int unsent = 0;  // that a TCP socket keeps at most
+  int unsent = 0;  // bytes that a TCP socket keeps at most
   size = sizeof unsent;
   if (getsockopt(fd(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, &size) == 0 && unsent > 0) {
     return false;

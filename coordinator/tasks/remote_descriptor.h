@@ -12,8 +12,8 @@
 
 namespace tcs {
 
-// A copy of the process's descriptor; none: errno is set. Where brokers hand them over
-// (os/descriptor_broker.h) this waits for the process's.
+// A copy of the process's descriptor; none: errno is set. Where brokers hand descriptors over
+// (os/descriptor_broker.h) this waits for the process's broker.
 UniqueFd CopyOfDescriptor(const Process& process, int number);
 
 class RemoteDescriptor {
@@ -22,7 +22,7 @@ class RemoteDescriptor {
 
   int fd() const { return fd_.get(); }  // -1: there is none of that number
 
-  // From then on it is the caller's.
+  // From then on the descriptor is the caller's.
   UniqueFd Take() { return std::move(fd_); }
 
   // False for files and folders, and for what is no descriptor.
@@ -35,13 +35,13 @@ class RemoteDescriptor {
   bool IsEventFd() const;
   bool IsTimer() const;
   bool IsTerminal() const;
-  // As the shim does it for what it reads itself: what TCP's sender waits for must not wait for a
-  // timer of the host's. Nothing happens to other descriptors.
+  // As the shim does it for its own reads: the acknowledgement that TCP's sender waits for must not
+  // wait for a timer of the host's. Nothing happens to other descriptors.
   void AcknowledgeAtOnce() const;
-  // False if it was opened for the other direction only.
+  // False if the descriptor was opened for the other direction only.
   bool CanBeRead() const;
   bool CanBeWritten() const;
-  // An integer option of SOL_SOCKET; `otherwise` where it has none.
+  // An integer option of SOL_SOCKET; `otherwise` where the descriptor has none.
   int SocketOption(int option, int otherwise) const;
   // SO_RCVTIMEO or SO_SNDTIMEO in ns; shm::kNeverNs for none.
   std::int64_t SocketTimeout(int option) const;

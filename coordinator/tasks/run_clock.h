@@ -1,5 +1,5 @@
-// The host's time since a run began: what has passed, what of it the coordinator had, and the TSC
-// that both the coordinator and the clients' clocks are read by. Nothing virtual is here.
+// The host's time since a run began: the time that has passed, the coordinator's part of it, and
+// the TSC that both the coordinator and the clients' clocks are read by. Nothing virtual is here.
 //
 // For the coordinator's thread only. Real nanoseconds.
 #pragma once

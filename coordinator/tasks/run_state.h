@@ -1,6 +1,6 @@
-// What the parts of a run share: what it was asked for, who takes part, how far it has come, and
-// what it is to report. Plain data, and what follows from it alone; what happens to it is the
-// parts' business.
+// The data that the parts of a run share: the request, the threads and processes that take part,
+// how far the run has come, and what it is to report. Plain data, and what follows from it alone;
+// the parts change it.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -41,21 +41,21 @@ struct RunState {
   double ticks_per_ns = 1.0;         // of the TSC
   shm::RunHeader* header = nullptr;  // which all clients can read; null before the set-up
 
-  // What CLOCK_REALTIME was ahead of virtual time at first, once a program has set the date.
+  // How far CLOCK_REALTIME was ahead of virtual time at first, once a program has set the date.
   std::optional<std::int64_t> first_realtime_offset_ns;
 
   VirtualTime end;
-  // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
+  // When the last event has happened. Events from elsewhere happen then, too, while nobody acts.
   VirtualTime latest;
   VirtualDuration most_lead;              // of all programs' clocks
   bool had_unregistered_threads = false;  // some process, at some time
   // Threads that have made their last call, and that the kernel was not through with when they were
-  // last looked at. What comes of their ends comes late to others then, and time waits for it.
+  // last looked at. The effects of their ends come late to others then, and time waits for them.
   std::vector<pid_t> exiting;
   StopRequest stop;
   VirtualTime grace_began = VirtualTime::Never();
 
-  // What CLOCK_REALTIME, or CLOCK_MONOTONIC, is ahead of virtual time.
+  // How far CLOCK_REALTIME, or CLOCK_MONOTONIC, is ahead of virtual time.
   std::int64_t OffsetOf(bool is_real) const {
     return is_real ? header->realtime_offset_ns.load() : header->monotonic_offset_ns;
   }
@@ -68,20 +68,20 @@ struct RunState {
   bool SendsToGates() const { return is_unprivileged || IsFixed(); }
   bool IsInGrace() const { return !grace_began.IsNever(); }
 
-  // What the thread has computed outside of a turn it is charged at once, and passes in its turns.
-  // Returns it as the host's.
+  // The thread is charged at once for the time that it has computed outside of a turn, and passes
+  // that time in its turns. Returns the time as the host's.
   HostDuration ChargeAsDebt(Task& task, VirtualDuration computed);
 
   // The furthest that two leaves, or a program's clock and the world, have been apart.
   VirtualDuration Drift() const { return std::max(root.drift(), most_lead); }
 
-  // Each sentence once.
+  // Gives each warning once.
   void Warn(const std::string& text);
 
   // The virtual time of what the running thread has just done to others: the time that its clock
   // showed when it held for the write.
   VirtualTime WrittenAt() const;
-  // The same of what it did when its clock had shown that.
+  // The same for what the thread did when its clock had shown `shown`.
   VirtualTime WrittenAt(ProgramTime shown) const;
 };
 

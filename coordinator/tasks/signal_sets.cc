@@ -8,7 +8,7 @@ namespace tcs {
 
 namespace {
 
-// Unless they are caught.
+// Signals that do nothing unless they are caught.
 constexpr std::uint64_t kDoNothing =
     SignalBit(SIGCHLD) | SignalBit(SIGCONT) | SignalBit(SIGURG) | SignalBit(SIGWINCH);
 

@@ -11,12 +11,12 @@ namespace tcs {
 namespace {
 
 // A look at memory takes less, on a host as fast as the robot, and what a thread does once it has
-// seen what it waits for mostly takes more. Under set costs it may read its clock, too.
+// seen what it waits for mostly takes more. Under set costs the thread may read its clock, too.
 constexpr std::int64_t kGapNs = 500;
-// It takes the host up to so long to stop a thread, of which it is charged some.
+// The host takes up to so long to stop a thread, and the thread is charged some of that.
 constexpr std::int64_t kStopNs = 20'000;
-// On a busy host so long, unless its CPU clock was asked. One that has seen what it waited for has
-// not paused as often in its turn.
+// A busy host takes so long, unless the thread's CPU clock was asked. A thread that has seen what
+// it waited for has not paused as often in its turn.
 constexpr std::int64_t kLateStopNs = 120'000;
 
 // Calls `found(cpu, task)` with what each other core of the thread's robot does next.
@@ -44,8 +44,8 @@ std::uint32_t SpinWaits::GapFor(const RunState& run, const Process& process) {
   return static_cast<std::uint32_t>(static_cast<double>(kGapNs) / std::min(1.0, robot.speed));
 }
 
-// Under set costs nobody comes to a horizon by computing, and where a thread is would be the
-// host's.
+// Under set costs no thread comes to a horizon by computing, and where a thread is would depend on
+// the host.
 bool SpinWaits::AsksThreads(const RunState& run) {
   return !run.IsFixed() && !run.IsCallback() &&
          std::ranges::any_of(run.scenario.robots,
@@ -73,7 +73,7 @@ bool SpinWaits::TurnEnds(Task& task, VirtualTime start) const {
   const bool in_loop = std::exchange(slot.spin.in_loop, std::uint8_t{0}) != 0;
   if (in_loop) task.process->stays_close_until = task.reached + kClose;
   const std::optional<SpinWait> before = std::exchange(task.spin, std::nullopt);
-  // Who yields may look at memory again, too.
+  // A thread that yields may look at memory again, too.
   const bool yields = run_.turn.notified && slot.note.kind == shm::NotificationKind::kYield;
   const bool stopped = !run_.turn.HasSpoken() ||
                        (run_.turn.notified && slot.note.kind == shm::NotificationKind::kHorizon);
@@ -87,7 +87,7 @@ bool SpinWaits::TurnEnds(Task& task, VirtualTime start) const {
   const bool spins = slot.spin_gap_ns != 0 && (yields || is_streak);
   const auto act = [&] {
     ++robot.acts;
-    // If it was stopped, others may have waited for what it did at any time until then.
+    // If the thread was stopped, others may have waited for what it did at any time until then.
     const VirtualDuration debt = std::max(VirtualDuration(), task.debt);
     const VirtualTime acted =
         run_.turn.HasSpoken() ? task.reached : start + (task.reached + debt - start) / 2;
@@ -104,7 +104,7 @@ bool SpinWaits::TurnEnds(Task& task, VirtualTime start) const {
   spin.is_first = slot.spin.pauses < 2;
   spin.was_stopped = stopped;
   spin.reads_clock = slot.spin.reads_clock != 0;
-  // It may have acted before it has begun.
+  // The thread may have acted before it has begun to spin.
   if (!before.has_value() || before->since != spin.since) act();
   spin.has_seen = robot.acts;
   return !before.has_value();
@@ -135,7 +135,7 @@ VirtualTime SpinWaits::NextToWake(const Task& task) {
   return next;
 }
 
-// Time that it has not computed.
+// Whether time passes that the thread has not computed.
 bool SpinWaits::Passes(const Task& task) {
   return task.spin.has_value() && !task.spin->only_yields && !task.spin->was_stopped &&
          !task.spin->reads_clock && task.reached - task.spin->since <= kLong;
@@ -145,7 +145,7 @@ void SpinWaits::Pass(Task& task, VirtualDuration duration) {
   task.charged += duration;
   task.debt += duration;
   task.cpu->busy += duration;
-  // What its way to the gate has taken is part of that.
+  // The time that the thread's way to its gate has taken is part of that.
   if (const std::int64_t cpu_ns = HostClockOf(task); cpu_ns >= 0) {
     task.metered.host_origin_ns = cpu_ns - task.metered.OnHost(task.charged).ns();
   }
@@ -155,7 +155,7 @@ void SpinWaits::PassTime(Task& task) const {
   if (!Passes(task)) return;
   const VirtualTime least = LeastThatActs(task);
   if (least.IsNever()) return;
-  // What the others have done by now it has seen. Who sleeps may do something when he wakes.
+  // The thread has seen what the others have done by now. A sleeping thread may act when it wakes.
   const VirtualTime seen_until = std::min(least, NextToWake(task));
   const VirtualDuration seen = std::max(VirtualDuration(), seen_until - task.reached);
   Pass(task, seen + StepOf(task) / 2);
@@ -166,7 +166,7 @@ bool SpinWaits::IsBeforeItsLook(Task& task) const {
   if ((!Passes(task) && !yields_again) || !task.parked) return false;
   const VirtualTime looks = task.cpu->progress + std::max(VirtualDuration(), task.debt);
   const VirtualTime acted = task.process->acted_until;
-  // Others that look, too, may act again and again.
+  // Other threads that look, too, may act again and again.
   if (acted > looks && !std::exchange(task.spin->has_waited, true)) Pass(task, acted - looks);
   return task.debt > VirtualDuration();
 }

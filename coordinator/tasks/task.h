@@ -37,7 +37,7 @@
 
 namespace tcs {
 
-// Whom a trapped call concerns that the kernel carries out (after_calls.cc).
+// The effects on others of a trapped call that the kernel carries out (after_calls.cc).
 enum class AfterCall {
   kNone,
   kBacklogs,
@@ -50,8 +50,8 @@ enum class AfterCall {
   kCreations
 };
 
-// A thread or a process that a thread is making, or has made: it is looked for until it is known
-// (calls/spawns.h).
+// A thread or a process that a thread is making, or has made: the coordinator looks for it until it
+// is known (calls/spawns.h).
 struct Creation {
   CloneCall call;
   bool is_announced = false;  // the shim has made it, and tells of it next
@@ -60,10 +60,10 @@ struct Creation {
 // A thread's wait for others that it computes through.
 struct SpinWait {
   VirtualTime since;
-  bool only_yields = false;    // it has yielded, and may look at memory
-  bool is_first = false;       // of its looks in a row
-  bool was_stopped = false;    // it span a moment before it was stopped
-  bool reads_clock = false;    // it looks at its clock, too
+  bool only_yields = false;    // the thread has yielded, and may look at memory
+  bool is_first = false;       // of the thread's looks in a row
+  bool was_stopped = false;    // the thread span a moment before it was stopped
+  bool reads_clock = false;    // the thread looks at its clock, too
   bool has_waited = false;     // for its next look, as others have acted
   std::uint64_t has_seen = 0;  // of what threads of its robot have done, by Robot::acts
 };
@@ -77,11 +77,11 @@ struct Task : HostThread {
   Process* process = nullptr;
   VirtualCpu* cpu = nullptr;  // dispatched on last; null before the first time
   pid_t own_tid = 0;          // by which its process knows it (os/own_number.h)
-  int slot = -1;              // -1: it has not registered yet
-  int order = 0;              // of registration; its number in the scheduling policies
+  int slot = -1;              // -1: not registered yet
+  int order = 0;              // of registration; the thread's number in the scheduling policies
   TaskState state = TaskState::kStarting;
-  // What it has come to: the time of its last stop, or of what has made it ready since. Changed by
-  // ComeTo only.
+  // The time that the thread has come to: that of its last stop, or of the event that has made it
+  // ready since. Changed by ComeTo only.
   VirtualTime reached;
   VirtualTime started_at;
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
@@ -90,64 +90,65 @@ struct Task : HostThread {
   std::int64_t children_looked = 0;  // of its process's children_changed when it last came to wait
   std::uint64_t fds_order = 0;       // of waiting for descriptors, over several attempts
   std::optional<KeptFiles> kept;     // of its call, from a wait on that is over
-  bool passes_on = false;            // others were passed over for it (one_waiter.cc)
+  bool passes_on = false;            // other threads were passed over for it (one_waiter.cc)
   bool is_deliverer = false;         // of DDS messages, to its process
-  std::optional<VirtualTime> messages_until;  // those due by then are for its next dispatch
+  std::optional<VirtualTime> messages_until;  // messages due by then are for its next dispatch
   int trap_listener = -1;
-  std::uint64_t trap_id = 0;       // it stopped in a trapped call instead of at its gate
-  std::int64_t trap_result = 0;    // what that call is to return,
-  UniqueFd trap_file;              // or a descriptor of that, which lives on when it executes
-  bool trap_file_on_exec = false;  // another program
-  // It had left the call, and may make it again: for the result that it has missed.
+  std::uint64_t trap_id = 0;       // the thread stopped in a trapped call instead of at its gate
+  std::int64_t trap_result = 0;    // the call is to return this,
+  UniqueFd trap_file;              // or a descriptor of this, which lives on when the thread
+  bool trap_file_on_exec = false;  // executes another program
+  // The thread had left the call, and may make it again: for the result that it has missed.
   bool answer_lost = false;
   std::optional<TrappedCall> early_trap;    // made without being dispatched: for its next dispatch
   bool trap_continues = false;              // or the kernel carries it out
   AfterCall after_call = AfterCall::kNone;  // of the call that the kernel carries out
-  bool is_brief = false;                    // it runs for that call only,
+  bool is_brief = false;                    // the thread runs for that call only,
   bool brief_done = false;                  // as has been seen,
-  std::uint64_t brief_id = 0;               // by which it was trapped; 0: it is making it,
+  std::uint64_t brief_id = 0;               // by which it was trapped; 0: it is being made,
   HostDuration brief_until;                 // until its CPU clock shows that
   bool expects_kernel = false;              // in its next call the kernel may hold it
-  TrappedCall unanswered_call;              // the last that it stopped in,
-  TrappedCall trapped_call;                 // and the last but futex calls
-  TrappedCall sending;         // by which the C library sends a signal for it, until its
+  TrappedCall unanswered_call;              // the last call that the thread stopped in,
+  TrappedCall trapped_call;                 // and the last one but futex calls
+  TrappedCall sending;         // by which the C library sends a signal for the thread, until its
                                // shim says that it is sent; number 0: none
   std::uint64_t end_word = 0;  // the kernel clears it at the thread's end; 0: unknown
-  // The priority-inheriting lock that has been handed to it, and it does not know yet; 0: none.
+  // The priority-inheriting lock that has been handed to the thread, which does not know it yet; 0:
+  // none.
   std::uint64_t handed_lock = 0;
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
   VirtualDuration debt;  // executed beyond a horizon, charged first at the next dispatch
-  int used_up = 0;       // dispatches in a row that ended at their horizon: it is computing
+  int used_up = 0;       // dispatches in a row that ended at their horizon: the thread is computing
   VirtualDuration charged;
   std::int64_t settled_adjust_ns = 0;  // of its clock page, as the last turn ended
-  bool is_cut_off = false;             // it has been told that its connection is not there any more
+  bool is_cut_off = false;             // the thread has been told that its connection is gone
   UniqueFd cpu_clock_fd;               // where its CPU clock is read, if it is not its process's
-  int yields = 0;           // since it last looked whether unregistered children wait for theirs
+  int yields = 0;           // since the last look whether unregistered children wait for theirs
   bool owes_ahead = false;  // has computed ahead what it has not paid yet (computing_ahead.h),
   static constexpr int kComputes = 3;  // `used_up` of a thread that is expected to go on
-  int ahead_after = kComputes;         // so it is sent to compute ahead once that is so much
+  int ahead_after = kComputes;         // the thread computes ahead once that is so much
   VirtualDuration ahead_from;          // from that charge on
-  // How many of its turns in a row were short, and of how many it needs to have one beside the
-  // coordinator (beside_cpu.h); and how far that one goes.
+  // How many of the thread's turns in a row were short, and how many have to be for a turn beside
+  // the coordinator (beside_cpu.h); and how far that turn goes.
   int short_turns = 0, beside_after = 3;
   VirtualTime beside_horizon;
   bool died_beside = false;  // with its process, in the turn that it has there
   HostDuration ran;          // in its last turn
   bool spins = false;        // computes on and on on an ideal robot
-  // It waits for another core by looking at memory (tasks/spin_waits.h); when it was last asked
-  // whether it does so without pausing.
+  // The thread waits for another core by looking at memory (tasks/spin_waits.h); `asked_at`: when
+  // the thread was last asked whether it does so without pausing.
   std::optional<SpinWait> spin;
   VirtualTime asked_at;
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
-  std::vector<Creation> creations;  // that it has begun, the earliest first
-  bool in_vfork = false;            // it stands in the kernel until its child executes or ends
-  // It has its place, but does not know of it: it has made no call yet that the shim sees.
+  std::vector<Creation> creations;  // begun by the thread, the earliest first
+  bool in_vfork = false;            // the thread is in the kernel until its child executes or ends
+  // The thread has its place, but does not know of it: it has made no call yet that the shim sees.
   bool is_adopted = false;
-  std::uint64_t tls = 0;       // of one that was that at its creation; 0: unknown
-  bool can_be_stopped = true;  // it has the handler that brings a thread to its gate
-  bool executes = false;       // another program, perhaps: it has no handlers there
-  // Its gate has been opened, and nothing that it has said since has been heard.
+  std::uint64_t tls = 0;       // of a thread that was adopted at its creation; 0: unknown
+  bool can_be_stopped = true;  // the thread has the handler that brings it to its gate
+  bool executes = false;       // another program, perhaps: the thread has no handlers there
+  // The thread's gate has been opened, and nothing that the thread has said since has been heard.
   bool is_let_go = false;
   bool has_signal = false;          // ours, to go to its gate, unless it has handled it by now
   bool is_put_off = false;          // has notified, and is heard later (gate_keeper.h),
@@ -155,9 +156,9 @@ struct Task : HostThread {
   shm::WorkCounts work{};           // so far,
   std::uint64_t trapped_calls = 0;  // with those of its calls that the shim has not seen
   std::int64_t activations = 0;
-  Activation activation;           // this one, while it does not wait
+  Activation activation;           // the present one, while the thread does not wait
   bool is_further = false;         // not the first thread of a client
-  std::uint64_t posts_taken = 0;   // of its command ring (shm/command_ring.h): what comes next
+  std::uint64_t posts_taken = 0;   // of its command ring (shm/command_ring.h): the next one's place
   std::uint32_t changes_seen = 0;  // of its slot's descriptors_changed
   int row = 0;                     // in the schedule trace and the log of dispatches
 
@@ -166,14 +167,14 @@ struct Task : HostThread {
     reached = time;
   }
 
-  // Its trapped call has been answered, or was left to the kernel; or it had left the call.
+  // The trapped call has been answered, or was left to the kernel; or the thread had left the call.
   void WasAnswered(bool was_there) {
     if (was_there && !trap_continues) handed_lock = 0;
     answer_lost = !was_there && !EndsBySignal(trap_result);
     trap_id = 0;
   }
 
-  // What it waits for, if that is of this kind.
+  // The object of the thread's wait, if that is of this kind.
   template <class Kind>
   const Kind* Awaits() const {
     return wait.has_value() ? wait->As<Kind>() : nullptr;
@@ -184,7 +185,7 @@ struct Task : HostThread {
   }
 };
 
-// The signals that do not reach the thread: those that it blocks, or its wait does.
+// The signals that do not reach the thread: the signals that it blocks, or its wait does.
 inline std::uint64_t BlockedOf(const Task& task, const SignalSets& sets) {
   const auto mask = task.wait.has_value() ? MaskOf(*task.wait) : std::nullopt;
   return mask.value_or(sets.blocked);
@@ -192,11 +193,11 @@ inline std::uint64_t BlockedOf(const Task& task, const SignalSets& sets) {
 
 struct Process {
   std::unique_ptr<ProcessLink> link;  // null before its first attach, and once it has ended
-  std::uint32_t index = 0;            // its place in TaskTable::processes
-  Process* client = nullptr;          // the client that it is or descends from
+  std::uint32_t index = 0;            // the process's place in TaskTable::processes
+  Process* client = nullptr;          // the client that the process is or descends from
   const ClientSpec* spec = nullptr;   // of a client
   pid_t pid = 0, parent = 0;
-  pid_t own_pid = 0;                // by which it knows itself (os/own_number.h),
+  pid_t own_pid = 0;                // by which the process knows itself (os/own_number.h),
   std::uint64_t pid_namespace = 0;  // and where; 0: in tcsim's
   UniqueFd pidfd;
   std::unique_ptr<DescriptorBroker>
@@ -204,45 +205,45 @@ struct Process {
   Robot* robot = nullptr;
   std::string name;
   int priority = 0;
-  VirtualDuration deadline;  // its client's, under scheduler: edf; 0: none
+  VirtualDuration deadline;  // the client's, under scheduler: edf; 0: none
   VirtualDuration call_cost;
   std::optional<VirtualDuration> allocation_cost;
-  bool is_bare = false;  // its program runs without the shim (bare_programs.h)
+  bool is_bare = false;  // the program runs without the shim (bare_programs.h)
   bool patch_vdso = false, leads_counter = false, dds_endpoints = false;
   shm::Draws draws;  // by trapped calls, where they repeat
   ProgramClock clock;
   ProcessTimers timers;
-  std::map<std::int64_t, UniqueFd> timer_fds;  // of those that have one, by the timer's id
-  // Of those: no descriptor of the program's is left, but calls on them were waiting then.
+  std::map<std::int64_t, UniqueFd> timer_fds;  // of timers that have one, by the timer's id
+  // Timers of which the program has no descriptor left, though calls on them were waiting then.
   std::vector<std::int64_t> closed_timers;
-  // When one last ran out, as the virtual CPU's time, while nobody has come to wait since.
+  // When a timer last ran out, as the virtual CPU's time, while no thread has come to wait since.
   VirtualTime expired = VirtualTime::Never();
-  EndedThreads ended;  // and how many periodic expiries found nobody waiting
+  EndedThreads ended;  // and how many periodic expiries found no thread waiting
   Usage descendants;   // of processes that have ended and descended from this client
   VirtualDuration children_cpu;
   EndedChildren ended_children;
-  std::int64_t children_changed = 0;  // how often one ended, stopped or went on
+  std::int64_t children_changed = 0;  // how often a child ended, stopped or went on
   bool stopped = false;               // by a signal, when last looked at
-  // As long as its parent may not have been told.
+  // As long as the process's parent may not have been told.
   bool stop_is_news = false, continue_is_news = false;
-  std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
-  bool pays_for_silence = false;  // a client: its threads compute for long without calls
+  std::uint32_t dds_number = 0;   // in dds::Hub; 0: not joined
+  bool pays_for_silence = false;  // a client: the threads compute for long without calls
   VirtualTime acted_until;        // when its threads last did more than spin, as far as it is known
-  VirtualTime stays_close_until;  // its threads' cores do to each other (tasks/spin_waits.h)
-  bool stays_home = false;        // its threads do not compute ahead (computing_ahead.h)
+  VirtualTime stays_close_until;  // the threads' cores do to each other (tasks/spin_waits.h)
+  bool stays_home = false;        // the threads do not compute ahead (computing_ahead.h)
   bool counter_warned = false;    // a client: of what it, or a descendant, reads by rdtsc
   bool dds_warned = false;        // a client: of what it, or a descendant, sends
-  bool has_erred = false;         // a client: it, or a descendant, has violated the protocol
-  Task* deliverer = nullptr;      // its thread that takes what is for it
+  bool has_erred = false;         // the client, or a descendant, has violated the protocol
+  Task* deliverer = nullptr;      // the thread that takes the process's DDS messages
   bool dead = false;
   bool killed = false;                      // at the end of its grace
   bool violates_protocol = false;           // killed, for what it has written into shared memory
   int threads = 1;                          // that ever attached
   DescriptorChanges changes;                // of its descriptors
-  bool has_unregistered_threads = false;    // threads that never will
+  bool has_unregistered_threads = false;    // threads that will never attach
   bool is_client = false;                   // named in the scenario, rather than a child of one
   int wait_status = 0;                      // once dead, of the coordinator's own children
-  std::optional<std::uint64_t> most_cpu_s;  // what it may compute at most (cpu_limit.h)
+  std::optional<std::uint64_t> most_cpu_s;  // the most that the process may compute (cpu_limit.h)
   bool asked_for_io_uring = false;          // which it was refused
   VirtualTime started_at;
   std::optional<VirtualTime> ended_at;
@@ -255,7 +256,7 @@ struct VirtualCpu {
   VirtualTime progress;  // changed by ComeTo only
   VirtualDuration busy;  // how much was computed on it
   TemporalConsistency::Leaf leaf = -1;
-  // Of an ideal robot's: where it has been standing, and since when.
+  // Of an ideal robot's virtual CPU: where the CPU has been standing, and since when.
   std::optional<VirtualTime> stands_at;
   HostTime stands_since;
 
@@ -270,24 +271,24 @@ struct Robot {
   double speed;
   double outside_speed = 1.0;  // virtual seconds for each real one that is waited outside
   std::uint32_t number = 0;    // in the scenario's order, from 1 on
-  bool is_ideal = false;       // its threads are charged nothing
+  bool is_ideal = false;       // the robot's threads are charged nothing
   bool is_ours = false;        // tcsim's own: no run goes on for its programs
   bool is_reached = false;     // nothing is local to it any more (calls/local_sockets.h)
   std::uint64_t acts = 0;      // turns of its threads that did more than spin
-  // Others than its own programs send it signals (engine/turns_beside.h).
+  // Others than the robot's own programs send it signals (engine/turns_beside.h).
   bool is_disturbed = false;
   RobotScheduler scheduler;
-  VirtualTime next_launch = VirtualTime::Never();  // when the next client of its starts
+  VirtualTime next_launch = VirtualTime::Never();  // when its next client starts
   std::vector<VirtualCpu*> cpus;                   // by core
   std::vector<Task*> tasks;                        // the living
   bool keeps_timer_signals =
       false;  // some of its processes' timers' wait to be sent (TimerSignals)
 
-  // As far as it may have come: its cores, and turns that have begun before their order.
+  // How far the robot may have come: its cores, and turns that have begun before their order.
   VirtualTime Furthest() const;
 };
 
-// What its process's clock shows where the thread is.
+// The time on the process's clock where the thread is.
 inline ProgramTime OwnNow(const Task& task) { return task.process->clock.At(task.reached); }
 
 inline VirtualTime Robot::Furthest() const {

@@ -15,9 +15,9 @@ enum class TaskState : std::uint8_t {
   kDead,
 };
 
-// A thread that runs is kReady (or kStarting, as long as it has not attached): what it asks for
-// makes it kHolding or kWaiting, and the kernel may hold it (kUnseen). Whoever goes on from a wait
-// may have to hold first. A wait gives way to another one only where the thread is about to die. A
+// A thread that runs is kReady (or kStarting, as long as it has not attached): its requests make it
+// kHolding or kWaiting, and the kernel may hold it (kUnseen). A thread that goes on from a wait may
+// have to hold first. A wait gives way to another one only where the thread is about to die. A
 // thread that the kernel held may be found at its gate, with what it asks for.
 constexpr bool MayFollow(TaskState before, TaskState after) {
   constexpr std::size_t kStates = 6;

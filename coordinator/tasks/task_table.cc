@@ -67,7 +67,7 @@ Process& TaskTable::AddProcess(pid_t pid) {
 }
 
 void TaskTable::TaskEnded(Task& task) {
-  // Its number may be another's already.
+  // The thread's number may be another's already.
   if (Living(task.tid) == &task) by_tid_.erase(task.tid);
   --living_;
   ended_tasks_.push_back(&task);

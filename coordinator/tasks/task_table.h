@@ -1,10 +1,10 @@
-// The threads and processes of a run, as the coordinator knows them, those that have ended among
-// them.
+// The threads and processes of a run, as the coordinator knows them, ended ones among them.
 //
-// Each has a place, by whose number the policies, the records and the kernel's events speak of it.
-// Of those that have ended a place is had again, the earliest first, but not before so many others
-// have ended that nobody speaks of it any more. References stay valid; what they refer to may be
-// another one by then. For the coordinator's thread only; makes no system call itself.
+// Each thread and each process has a place, by whose number the policies, the records and the
+// kernel's events speak of it. The place of an ended one is had again, the earliest first, but not
+// before so many others have ended that nobody speaks of the ended one any more. References stay
+// valid; the thread or process there may be another one by then. For the coordinator's thread only;
+// makes no system call itself.
 #pragma once
 
 #include <sys/types.h>
@@ -29,30 +29,30 @@ class TaskTable {
   // its own.
   explicit TaskTable(std::function<bool(pid_t)> is_reaped) : is_reaped_(std::move(is_reaped)) {}
 
-  // Their numbers are set, and nothing else. One that lives and has the same number is found by it
-  // no longer.
+  // The new one's number is set, and nothing else. An older one that lives and has the same number
+  // is found by it no longer.
   Task& AddTask(pid_t tid);
   Process& AddProcess(pid_t pid);
-  // It lives no longer. What else that means is said in its fields, by the caller.
+  // The thread, or process, lives no longer. The caller says in its fields what else that means.
   void TaskEnded(Task& task);
   void ProcessEnded(Process& process);
-  // That place may be had again.
+  // The place of that process may be had again.
   void GiveUp(Process& ended) { ended_processes_.push_back(&ended); }
 
   // Threads that live.
   int living() const { return living_; }
-  // Null if none that lives has that number.
+  // Null if no living one has that number.
   Task* Living(pid_t tid) const;
   Process* LivingProcess(pid_t pid) const;
-  // The same by the numbers that a process says.
+  // The same by the numbers that the process `by` says.
   Task* Named(const Process& by, pid_t tid);
   Process* NamedProcess(const Process& by, pid_t pid);
   // A process's threads that live, in the order in which the kernel considers them for a signal:
   // the main thread first, wherever its place is.
   std::vector<Task*> ThreadsOf(const Process& process);
-  // It is the broker of one (os/descriptor_broker.h).
+  // Whether that process is the broker of another one (os/descriptor_broker.h).
   bool IsBroker(pid_t pid) const;
-  // One of its children lives.
+  // Whether a child of the process lives.
   bool HasChild(const Process& parent) const;
 
   const Task& At(int order) const { return tasks_[static_cast<std::size_t>(order)]; }

@@ -1,6 +1,6 @@
 // One turn of a thread on a processor of the host: from its dispatch until it has stopped and was
-// charged. While it lasts, whatever the kernel tells of is the thread's doing, or finds it stopped
-// halfway.
+// charged. While the turn lasts, every event that the kernel tells of is the thread's doing, or
+// finds the thread stopped halfway.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace tcs {
 
 class Turn {
  public:
-  // What is known of the turn before stays until the next one begins.
+  // The data of a turn stays until the next turn begins.
   void Begin(Task& task, VirtualTime horizon) {
     *this = {};
     task_ = &task;
@@ -22,21 +22,21 @@ class Turn {
   }
   void End() { task_ = nullptr; }
 
-  // Whose it is; null between two turns.
+  // The thread whose turn it is; null between two turns.
   Task* task() const { return task_; }
   bool lasts() const { return task_ != nullptr; }
   bool IsOf(const Task& task) const { return &task == task_; }
   bool IsIn(const Process& process) const { return lasts() && task_->process == &process; }
   bool IsOn(const Robot& robot) const { return lasts() && task_->process->robot == &robot; }
-  // Its thread has registered, so that it has a clock.
+  // The turn's thread has registered, so that it has a clock.
   bool HasClock() const { return lasts() && task_->slot >= 0; }
 
   // How far the thread may come, as its virtual CPU's time.
   VirtualTime horizon() const { return horizon_; }
   void LimitTo(VirtualTime horizon) { horizon_ = std::min(horizon_, horizon); }
 
-  // Why the thread was stopped. It has said what it wants, either way; or its time was over, which
-  // is also so where it only has to be looked at, and then it goes on.
+  // Why the thread was stopped. In the first two cases the thread has said what it wants. In the
+  // third its time was over, which is also so where it only has to be looked at; then it goes on.
   bool notified = false;
   std::optional<TrappedCall> trapped;
   bool timed_out = false;

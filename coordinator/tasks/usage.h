@@ -1,4 +1,4 @@
-// What a thread, a process, or a client with all that it has started has used, for the report.
+// The usage of a thread, a process, or a client with all that it has started, for the report.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace tcs {
 
-// What was waited for from outside of the run (calls/outside_waits.h).
+// Answers that were waited for from outside of the run (calls/outside_waits.h).
 struct OutsideUsage {
   std::int64_t answers = 0;
   VirtualDuration waited;
@@ -33,14 +33,14 @@ struct Usage {
   }
 };
 
-// Of a process's threads that have ended. The CPU clock of one that was killed with its process
-// cannot be read any more; but the process's clock, which can be until somebody reaps it, has what
-// all of them had. Pure.
+// Of a process's threads that have ended. The CPU clock of a thread that was killed with its
+// process cannot be read any more; but the process's clock, which can be read until somebody reaps
+// the process, has what all threads had. Pure.
 class EndedThreads {
  public:
   // `usage` without host_cpu_ns. `clock_ns` is what the thread's CPU clock shows, negative if that
-  // cannot be read; it was first charged at `origin_ns` of it, and is to have had `fallback_ns`
-  // where nobody can tell.
+  // cannot be read; the thread was first charged at `origin_ns` of that clock, and is to have had
+  // `fallback_ns` where nobody can tell.
   void Add(const Usage& usage, std::int64_t clock_ns, std::int64_t origin_ns,
            std::int64_t fallback_ns) {
     usage_ += usage;
@@ -55,14 +55,14 @@ class EndedThreads {
     }
   }
 
-  // All have ended; the process's clock shows `process_clock_ns`.
+  // All threads have ended; the process's clock shows `process_clock_ns`.
   void Complete(std::int64_t process_clock_ns) {
     if (!has_lost_ || threads_changed_clocks_ || process_clock_ns < clocks_ns_) return;
     usage_.host_cpu_ns += process_clock_ns - clocks_ns_ - lost_origins_ns_ - lost_fallback_ns_;
     has_lost_ = false;
   }
 
-  // One has become the first one, as in an exec, and its clock that one's.
+  // A thread has become the first one, as in an exec, and its clock the first thread's.
   void NoteChangedClocks() { threads_changed_clocks_ = true; }
   void CountOverruns(std::int64_t overruns) { usage_.overruns += overruns; }
 

@@ -42,7 +42,7 @@ std::string TextOf(const KernelObject& object) {
   return "for room in a listener's backlog";
 }
 
-// What the kernel holds the thread for, as far as the system call says it.
+// The reason for which the kernel holds the thread, as far as the system call says it.
 std::string TextOfKernelWait(const std::string& call) {
   constexpr std::pair<int, const char*> kWaits[] = {
       {SYS_semop, "waits for a System V semaphore"},
@@ -57,7 +57,7 @@ std::string TextOfKernelWait(const std::string& call) {
   return fmt::format("is in system call {}, whose end only the kernel knows", call);
 }
 
-// The descriptors as the program numbers them, as far as it has said so.
+// The descriptors as the program numbers them, as far as the program has said so.
 std::string DescriptorsOf(const Task& task, const awaited::Descriptors& wait) {
   const bool raw = task.wait->is_in_trapped_call;
   const shm::Notification& note = SlotOf(task).note;

@@ -1,4 +1,4 @@
-// What a thread waits for, in words, for a user who sees nothing happen (standstill_watch.h).
+// A thread's wait, in words, for a user who sees nothing happen (standstill_watch.h).
 #pragma once
 
 #include <string>
@@ -8,18 +8,19 @@
 namespace tcs {
 
 struct WaitText {
-  // The least of a program's threads is what the program waits for: what others of the same program
-  // can end comes last.
+  // The wait of least rank among a program's threads is what the program waits for: a wait that
+  // other threads of the same program can end comes last.
   int rank = 0;
   std::string text;  // goes on after the program's name
 
   auto operator<=>(const WaitText&) const = default;
 };
 
-// What its wait is for, of a thread that waits. `has_child`: as below. Looks at no other process.
+// The wait of a thread that waits. `has_child`: as below. Looks at no other process.
 WaitText TextOfAwaited(const Task& task, bool has_child);
 
-// `has_child`: its process has a child that lives. For the coordinator's thread; reads /proc.
+// `has_child`: the thread's process has a child that lives. For the coordinator's thread; reads
+// /proc.
 WaitText TextOfWait(const Task& task, bool has_child);
 
 }  // namespace tcs

@@ -22,12 +22,13 @@ void Waker::SetState(Task& task, TaskState state, bool goes_first) {
   if (const int more = (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
       more != 0) {
     unseen_ += more;
-    ++task.process->changes.turns;  // it goes on without one
+    ++task.process->changes.turns;  // the thread goes on without a turn
     run_.header->kernel_waiters.store(static_cast<std::uint32_t>(unseen_));
   }
   task.state = state;
   Requeue(task, goes_first);
-  // A deliverer that waits for something else must not be waited for: it may need what those hold.
+  // A deliverer that waits for something else must not be waited for: the deliverer may need what
+  // its waiters hold.
   if (task.is_deliverer && !IsRunnable(task) && task.Awaits<awaited::Messages>() == nullptr) {
     const bool runs = run_.turn.IsOf(task);
     listeners_.deliverer_is_held_up(*task.process, {runs ? run_.WrittenAt() : task.reached});
@@ -113,7 +114,7 @@ void Waker::MoveDeadline(Task& task, VirtualTime to) {
   Requeue(task);
 }
 
-// So that those whom nobody waits for need not tell of what they do.
+// So that threads need not tell of what they do where nobody waits for it.
 void Waker::ShowObjectWaiters() {
   const auto waiters = static_cast<std::uint32_t>(counts_.for_objects());
   if (run_.header->object_waiters.load(std::memory_order_relaxed) != waiters) {
@@ -136,18 +137,19 @@ void Waker::Wake(Task& task, shm::WakeReason reason, EventTime when) {
   }
   task.ComeTo(std::max({task.reached, when.at, EarliestWake()}));
   if (waited) {
-    // Where somebody more urgent ran on, the kernel's timer would still have been in time.
+    // Where a more urgent thread ran on, the kernel's timer would still have been in time.
     const bool timed = reason == shm::WakeReason::kDeadline;
     const VirtualTime released = timed ? std::min(task.wait->deadline, task.reached) : task.reached;
     SchedulerOf(task).WakeUp(task.order, released, outside);
   }
-  // Others may have come further: what is due later than its own time it gets then.
+  // Others may have come further: the thread gets a message that is due later than its own time
+  // when it is due.
   if (for_messages) {
     task.messages_until = reason == shm::WakeReason::kDeadline ? task.wait->deadline : task.reached;
   }
   if (waited && task.wait->is_in_trapped_call) listeners_.ends_in_trapped_call(task, reason);
   Leave(task);
-  // Whoever waited for others looks at what they did: that must be all of it.
+  // A thread that waited for others looks at what they did: it must see all of that.
   SetState(task, reads && !run_.IsCallback() ? TaskState::kHolding : TaskState::kReady, goes_first);
   task.hold = shm::NotificationKind::kRead;
   task.reason = reason;
@@ -165,7 +167,7 @@ VirtualTime Waker::EarliestWake() const {
 
 void Waker::NoteLateness(const Task& woken, VirtualTime sent, bool goes_first) {
   if (run_.IsCallback()) return;
-  sent = std::max(sent, woken.reached);  // since then it has waited
+  sent = std::max(sent, woken.reached);  // the thread has waited since then
   const VirtualDuration late =
       SchedulerOf(woken).LatenessOf(woken.order, sent, EarliestWake(), goes_first);
   run_.report.lateness_ns = std::max(run_.report.lateness_ns, late.ns());

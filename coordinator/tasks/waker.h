@@ -1,7 +1,7 @@
 // The one door through which a thread comes to act, or to wait: every change of a thread's state
 // goes through here, with the time at which it happens, and the robot's scheduler hears of it.
 //
-// For the coordinator's thread only. Makes no system call itself; what it tells others may.
+// For the coordinator's thread only. Makes no system call itself; the listeners that it tells may.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,11 @@ namespace tcs {
 
 class Waker {
  public:
-  // Those who keep something for a thread as long as it waits. All must be set.
+  // The parts that keep something for a thread as long as it waits. All functions must be set.
   struct Listeners {
     // The wait has begun; a signal that ends it may be pending already.
     std::function<void(Task&)> began_by_signal;
-    // The wait is over: its place in queues is given up.
+    // The wait is over: the thread's place in queues is given up.
     std::function<void(Task&, tcs::Wait&)> left;
     // A wait in a trapped call ends, for that reason; `wait` is still there.
     std::function<void(Task&, shm::WakeReason)> ends_in_trapped_call;
@@ -36,10 +36,10 @@ class Waker {
   Waker(RunState& run, Activations& activations) : run_(run), activations_(activations) {}
   void Tell(Listeners listeners) { listeners_ = std::move(listeners); }
 
-  // The thread may act again, from `when` on, but not before others have passed that time where
-  // it has waited for what they do. Nothing happens to one that is dead.
+  // The thread may act again, from `when` on, but not before others have passed that time where it
+  // has waited for what they do. Nothing happens to a dead thread.
   void Wake(Task& task, shm::WakeReason reason, EventTime when);
-  // It acts again once it can miss nothing (kRead), or be too early for nobody (kWrite).
+  // The thread acts again once it can miss nothing (kRead), or be too early for nobody (kWrite).
   void Hold(Task& task, shm::NotificationKind for_what);
   // The same for a call that the kernel carries out next. Under callback nobody is ahead.
   void HoldInCall(Task& task, shm::NotificationKind for_what) {
@@ -48,31 +48,31 @@ class Waker {
   // The beginning of a wait, and its end; nothing happens if the thread does not wait.
   void Wait(Task& task, tcs::Wait wait);
   void Leave(Task& task);
-  // Of a thread that waits.
+  // Moves the deadline of a thread that waits.
   void MoveDeadline(Task& task, VirtualTime to);
-  // What else happens to it: it has registered, is in the kernel's hands, has ended.
+  // The other changes: the thread has registered, is in the kernel's hands, has ended.
   void SetState(Task& task, TaskState state, bool goes_first = false);
 
   // The robot's scheduler takes note of where the thread stands, whose state is the same.
   void Requeue(Task& task, bool goes_first = false);
-  // Whatever changes what a robot could do next ends with this.
+  // Every change of what a robot could do next ends with this call.
   void Refresh(Robot& robot);
 
   static bool IsRunnable(const Task& task);
-  // It is not held up by what others may still do.
+  // Whether the thread is not held up by what others may still do.
   bool IsSafe(const Task& task) const;
-  // Whether a wait is over by time: the world's, or, where others of its process compute while the
-  // world stands still, that of the process's own clock.
+  // Whether the thread's wait is over by time: the world's, or, where other threads of the process
+  // compute while the world stands still, that of the process's own clock.
   bool HasRunOut(const Task& task, VirtualTime now) const;
   // When the thread's wait is over, as its process's clock tells it.
   static ProgramTime OwnDeadlineOf(const Task& task);
-  // What its robot's scheduler is to know of it.
+  // The wait as the thread's robot's scheduler is to know it.
   RobotScheduler::Wait WaitOf(const Task& task) const;
-  // What arrives later than the drift bound allows for (the kernel may take its time) is seen when
-  // that is over, not in the past of those who have gone on.
+  // An event that arrives later than the drift bound allows for (the kernel may take its time) is
+  // seen when the bound is over, not in the past of those who have gone on.
   VirtualTime EarliestWake() const;
-  // What was sent at `sent` wakes a thread. The core that it runs on at once may have come
-  // further.
+  // Something that was sent at `sent` wakes a thread. The core that the thread runs on at once may
+  // have come further.
   void NoteLateness(const Task& woken, VirtualTime sent, bool goes_first);
 
   // The world waits for what is written to terminals, as long as the run lasts.

@@ -11,18 +11,19 @@
 
 namespace tcs {
 
-// What ended the wait before an activation; or, without one, what was received as it began.
+// The event that ended the wait before an activation; or, without a wait, the event that was
+// received as the activation began.
 enum class ReleaseCause { kStart, kTime, kInput, kThread, kChild, kSignal };
-// As tables have it: "start", "time"…
+// The cause's name in tables: "start", "time"…
 std::string_view NameOf(ReleaseCause cause);
 
-// One that has not ended yet. Times are those of the thread's own clock.
+// An activation that has not ended yet. Times are those of the thread's own clock.
 struct Activation {
   ReleaseCause cause = ReleaseCause::kStart;
-  std::int64_t release_ns = 0;  // it became ready
-  std::int64_t start_ns = -1;   // it ran first; -1: not yet
-  std::int64_t charged_ns = 0;  // to the thread before, at its most
-  shm::WorkCounts work{};       // that the thread had done before
+  std::int64_t release_ns = 0;  // the thread became ready
+  std::int64_t start_ns = -1;   // the thread ran first; -1: not yet
+  std::int64_t charged_ns = 0;  // the thread's highest charge before
+  shm::WorkCounts work{};       // done by the thread before
 };
 
 class ActivationLog {

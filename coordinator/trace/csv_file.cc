@@ -26,7 +26,8 @@ std::string CsvFile::Open(const std::string& path, std::string_view header) {
   file_ = std::fopen(path.c_str(), "we");
   if (file_ == nullptr) return CannotBeWritten(path);
   noted_.resize(kNotedBytes);
-  // What is written is whole lines, and in the file at once: a run that is killed leaves no halves.
+  // Each write holds whole lines and is in the file at once: a run that is killed leaves no half
+  // lines.
   std::setvbuf(file_, nullptr, _IONBF, 0);
   const std::string line = std::string(header) + "\n";
   std::fwrite(line.data(), 1, line.size(), file_);

@@ -3,7 +3,7 @@
 // CPU's caches, and code that formats, and what it needs, would be fetched anew for each line.
 //
 // Texts are written as they are: names of clients need no quoting (docs/SCENARIO.md). Not
-// thread-safe. What could not be written is reported by Close().
+// thread-safe. Close() reports what could not be written.
 #pragma once
 
 #include <concepts>
@@ -28,7 +28,7 @@ class CsvFile {
   [[nodiscard]] std::string Open(const std::string& path, std::string_view header);
   bool is_open() const { return file_ != nullptr; }
 
-  // One line; texts, whole numbers, and others with as many digits as tell them apart.
+  // Notes one line: texts, whole numbers, and other numbers with as many digits as tell them apart.
   template <class... Fields>
   void Line(const Fields&... fields) {
     if (file_ == nullptr) return;
@@ -47,8 +47,8 @@ class CsvFile {
   // More than any line takes when noted, texts (of kLongestText at most) included.
   static constexpr std::size_t kLongestLine = 1024, kLongestText = 256;
 
-  // Before a field's bytes: a text's length, or that it is a number, whole or not. And after a
-  // line's last field.
+  // A mark before a field's bytes: a text's length, or that the field is a number, whole or not.
+  // Another mark follows a line's last field.
   using Mark = std::uint16_t;
   static constexpr Mark kNumber = 0xffff, kLineEnd = 0xfffe, kReal = 0xfffd;
 

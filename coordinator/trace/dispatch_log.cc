@@ -4,7 +4,7 @@ namespace tcs {
 
 namespace {
 
-// More than one turn of the coordinator's takes.
+// More time than one turn of the coordinator takes.
 constexpr std::int64_t kMostBetweenNs = 100'000;
 
 }  // namespace

@@ -1,9 +1,10 @@
-// Who had the processor when, in virtual and in real time: dispatches.csv, one line per slice.
+// Which thread had the processor when, in virtual and in real time: dispatches.csv, one line per
+// slice.
 //
-// A slice that follows another one of its row without a gap in virtual time, and with nobody else
-// in between, lengthens it, unless the real time between is too long to be the coordinator's turn.
-// Without real times everything written derives from virtual time: two deterministic runs write the
-// same bytes.
+// A slice that follows another one of its row without a gap in virtual time, and with no other row
+// in between, lengthens that slice, unless the real time between is too long to be the
+// coordinator's turn. Without real times everything written derives from virtual time: two
+// deterministic runs write the same bytes.
 #pragma once
 
 #include <cstdint>

@@ -1,11 +1,11 @@
-// When clients wrote what they said: output.csv, a line for each piece that came to the end of a
-// client's .out.log or .err.log, with the virtual time by which it was there.
+// When clients wrote their output: output.csv, a line for each piece that came to the end of a
+// client's .out.log or .err.log, with the virtual time by which the piece was there.
 //
-// The files are the clients' own: nobody tells of what is written there, and a program that prints
-// must not take other time than one that does not. So the kernel is asked (inotify), once for each
-// stop of a client, which takes 0.4 us. The reactor would be told for nothing, but at once: each
-// write would wake the coordinator, which takes the processor from the program that writes.
-// Not thread-safe.
+// The files are the clients' own: no client reports its writes there, and a program that prints
+// must not take other time than a program that does not. So the kernel is asked (inotify), once for
+// each stop of a client, which takes 0.4 us. The reactor would get the notices at no cost, but at
+// once: each write would wake the coordinator, which takes the processor from the program that
+// writes. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,8 @@ class OutputLog {
   void Tell(Grown grown) { grown_output_ = std::move(grown); }
   // Notes what has been written since the last time.
   void LookAt(std::int64_t now_ns);
-  // What the client writes from now on was written by the time of the next look after it is let go.
+  // Output that the client writes from now on counts as written by the time of the next LookAt
+  // after LetGo.
   void Hold(const std::string& client);
   void LetGo(const std::string& client);
   void Flush() { csv_.Flush(); }
@@ -44,7 +45,7 @@ class OutputLog {
   struct Stream {
     std::string client;
     const char* name;
-    std::int64_t bytes = 0;  // that have been noted
+    std::int64_t bytes = 0;  // noted so far
     bool is_held = false, has_grown = false;
   };
   using Streams = std::map<std::string, Stream, std::less<>>;
@@ -54,8 +55,8 @@ class OutputLog {
   std::string folder_;
   UniqueFd watch_;
   Streams streams_;                                                     // by file
-  std::map<std::string, std::vector<Streams::value_type*>> of_client_;  // its streams
-  std::vector<Streams::value_type*> grown_;                             // while they were held
+  std::map<std::string, std::vector<Streams::value_type*>> of_client_;  // the client's
+  std::vector<Streams::value_type*> grown_;                             // grew while held
   Grown grown_output_;
   CsvFile csv_;
 };

@@ -1,4 +1,4 @@
-// Who had the processor when, as a run writes it while it goes: a picture of virtual time
+// Which thread had the processor when, written while the run goes: a picture of virtual time
 // (trace.json) and a table with the real time beside it (dispatches.csv).
 #pragma once
 
@@ -22,19 +22,20 @@ class ScheduleRecords {
   // Without real times two deterministic runs write the same bytes. Empty on success, else one
   // sentence.
   [[nodiscard]] std::string Open(const std::string& directory, bool with_real_times);
-  // From when real times count.
+  // Real times count from `tsc` on.
   void StartAt(std::uint64_t tsc, double ticks_per_ns);
 
-  // A new row, or the one of that name: children come and go, and take over the names of those that
-  // have gone.
+  // A new row, or the row of that name: children come and go, and take over the names of children
+  // that have gone.
   int AddRow(const std::string& group, const std::string& name);
 
-  // `shown` is on the clock of who ran, `world` on the world's, which may stand still meanwhile.
+  // `shown` is on the clock of the thread that ran, `world` on the world's, which may stand still
+  // meanwhile.
   void Slice(int row, Span shown, Span world, TscSpan real);
   // `what` is a literal.
   void Instant(int row, const char* what, std::int64_t at_ns);
 
-  // So that what is left of a run that is killed ends shortly before.
+  // Writes what is noted, so that the files of a run that is killed end shortly before the kill.
   void Flush();
   [[nodiscard]] std::string Close();
 

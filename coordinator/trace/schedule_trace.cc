@@ -40,14 +40,15 @@ std::string ScheduleTrace::Open(const std::string& path) {
   return {};
 }
 
-// In place of the file's end, which comes after it.
+// Writes `events` in place of the file's end, which comes after them.
 void ScheduleTrace::Write(std::string_view events) {
   const std::string text = std::string(events) + std::string(kEnd);
   std::fseek(file_, -static_cast<long>(kEnd.size()), SEEK_CUR);
   std::fwrite(text.data(), 1, text.size(), file_);
 }
 
-// After what was noted before it: the file is the same, whenever that is written.
+// Writes the event after all events that were noted before it: the file is the same, whenever the
+// noted events are written.
 void ScheduleTrace::Event(std::string_view json) {
   Flush();
   Write(std::string(std::exchange(first_, false) ? "" : kSeparator) + std::string(json));

@@ -1,10 +1,10 @@
-// Who ran when, in virtual time, as Chrome trace events (JSON): ui.perfetto.dev and
-// chrome://tracing open it. One row per client under its robot, one for the dynamics.
+// Which thread ran when, in virtual time, as Chrome trace events (JSON): ui.perfetto.dev and
+// chrome://tracing open the file. One row per client under its robot, one for the dynamics.
 //
 // A thread's slices that follow each other without a gap become one, so that a planner's second is
 // one bar and not a thousand. Everything written derives from virtual time: two deterministic runs
-// write the same bytes. As in csv_file.h, what happened is noted and becomes text with much else.
-// Not thread-safe. A file that cannot be written is reported by Close().
+// write the same bytes. As in csv_file.h, an event is noted and becomes text together with many
+// others. Not thread-safe. A file that cannot be written is reported by Close().
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class ScheduleTrace {
   // Empty on success, else one sentence. Without Open everything below does nothing.
   [[nodiscard]] std::string Open(const std::string& path);
 
-  // A row named `name` in the group `group`, shown in the order of their making.
+  // A row named `name` in the group `group`. Rows are shown in the order of their making.
   int AddRow(const std::string& group, const std::string& name);
   // Row `row` was busy from `start_ns` to `end_ns`, which may be the same; later slices of a row
   // never begin earlier.
@@ -33,8 +33,8 @@ class ScheduleTrace {
   // Something happened at one instant. `what` is a literal.
   void Instant(int row, const char* what, std::int64_t at_ns);
 
-  // Writes what is noted. The file is whole then, and after every other write: so is what a run
-  // leaves that is killed.
+  // Writes what is noted. The file is whole then, and after every other write, so that a run that
+  // is killed leaves a whole file.
   void Flush();
 
   // Empty on success, else one sentence.
@@ -46,7 +46,7 @@ class ScheduleTrace {
     bool has_slice = false;  // not written yet, for more may follow without a gap
     std::int64_t start_ns = 0, end_ns = 0;
   };
-  // Of a row. An instant where `what` says what happened, else a slice.
+  // An event of a row: an instant where `what` says what happened, else a slice.
   struct Noted {
     int row;
     const char* what;

@@ -41,7 +41,7 @@ class Runner {
     for (const TrialOutcome& outcome : work.earlier) {
       progress_.finished_seconds.push_back(static_cast<double>(outcome.real_ns) * 1e-9);
     }
-    std::reverse(todo_.begin(), todo_.end());  // the next one is the last
+    std::reverse(todo_.begin(), todo_.end());  // the next trial is at the end
   }
 
   LauncherReport Run();
@@ -121,7 +121,7 @@ void Runner::Finish(Running* running) {
   const std::string folder = FolderOf(running->trial);
   TrialEnd end{running->trial, ReadOutcome(folder, running->trial.seed), {}};
   if (!end.outcome.has_value()) {
-    // It was ended by us, or by the terminal.
+    // The trial was ended by the launcher, or by the terminal.
     if (report_.interrupted) return;
     end.why = LastWords(ReadText(folder + "/tcsim.log"));
     if (end.why.empty()) {
@@ -148,7 +148,8 @@ void Runner::Wait() {
   std::vector<pollfd> fds{{stop_.fd(), POLLIN, 0}};
   for (const Running& running : running_) fds.push_back({running.process.pidfd(), POLLIN, 0});
   const int happened = poll(fds.data(), fds.size(), events_.on_progress ? kLookMs : -1);
-  // First, since ^C at a terminal reaches the runs, too: their ends are no failures then.
+  // The signal is taken first, since ^C at a terminal reaches the runs, too: their ends are no
+  // failures then.
   TakeSignal();
   auto running = running_.begin();
   for (std::size_t i = 1; i < fds.size() && happened > 0; ++i) {

@@ -13,7 +13,7 @@ std::optional<TrialOutcome> OutcomeFromJson(const std::string& text, std::uint64
     if (json.at("interrupted").get<bool>() || json.at("seed").get<std::uint64_t>() != seed) {
       return {};
     }
-    // A run without clients has none of this.
+    // The summary of a run without clients has no such object.
     for (const auto& client : json.value("clients", nlohmann::json::object())) {
       if (client.at("ended_at_ns").get<std::int64_t>() >= 0 &&
           client.at("wait_status").get<int>() != 0) {

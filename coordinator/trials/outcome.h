@@ -1,4 +1,4 @@
-// What a trial's folder says of how it went.
+// The outcome of a trial, as its folder tells it.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@ struct TrialOutcome {
   double overhead_percent = 0.0;
 };
 
-// From the text of a summary.json; none unless the run with this seed went to its end and no client
-// of it failed.
+// The outcome in the text of a summary.json; none unless the run with this seed went to its end and
+// none of its clients failed.
 std::optional<TrialOutcome> OutcomeFromJson(const std::string& text, std::uint64_t seed);
-// The same from the folder.
+// The outcome in the folder's summary.json.
 std::optional<TrialOutcome> ReadOutcome(const std::string& folder, std::uint64_t seed);
 
-// The sentence out of what a run printed that says why it failed, without "tcsim: "; its last line
-// if it says none; empty if it said nothing but warnings.
+// The sentence in a run's output that says why the run failed, without "tcsim: "; the output's last
+// line if no sentence says so; empty if the run said nothing but warnings.
 std::string LastWords(const std::string& said);
 
 // The end of a file as text; empty if it cannot be read.

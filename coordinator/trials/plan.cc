@@ -42,7 +42,7 @@ std::vector<std::string> ValueSettings(const TrialsPlan& plan, std::size_t group
   return settings;
 }
 
-// Setting the one sets the other, too: it is the same key, or above it.
+// Setting `key` sets `other`, too: `key` is the same key, or above it.
 bool Covers(const std::string& key, const std::string& other) {
   return other == key || other.starts_with(key + ".");
 }

@@ -13,7 +13,7 @@ namespace tcs {
 namespace {
 
 constexpr std::size_t kBar = 24;
-// Less than this of a trial says little about how long it takes.
+// A smaller part of a trial than this says little about how long the trial takes.
 constexpr double kTellingFraction = 0.02;
 
 double Mean(const std::vector<double>& values) {

@@ -35,7 +35,7 @@ std::string KeysOf(const TrialsPlan& plan) {
 
 }  // namespace
 
-// FNV-1a. Not against those who forge: against those who forget.
+// FNV-1a. It guards against forgetting, not against forging.
 std::string HashOfFile(const std::string& path) {
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
@@ -96,7 +96,7 @@ std::variant<TrialsRecord, std::string> RecordFromJson(const std::string& text) 
     json.at("fingerprint").at("programs").get_to(record.programs);
     return record;
   } catch (const Json::exception& error) {
-    // Without the library's number of it, "[json.exception.parse_error.101] ".
+    // The text without the library's number of the error, "[json.exception.parse_error.101] ".
     const std::string what = error.what();
     return what.substr(what.find("] ") + 2);
   }

@@ -1,5 +1,5 @@
-// trials.json: what a result folder holds the trials of. It is written before the first trial, and
-// says to a later call whether it may go on there.
+// trials.json: the record of what a result folder holds the trials of. The file is written before
+// the first trial, and says to a later call whether it may go on there.
 #pragma once
 
 #include <map>
@@ -23,9 +23,9 @@ std::string ToJson(const TrialsRecord& record);
 // The record, or what is wrong with the text.
 [[nodiscard]] std::variant<TrialsRecord, std::string> RecordFromJson(const std::string& text);
 
-// What determines a trial's outcome and differs, as the end of a sentence: "was made with --sync
-// consistent, not callback"; empty if the trials of both belong together. More or fewer trials,
-// other values of the same key and another name do.
+// The difference that matters for a trial's outcome, as the end of a sentence: "was made with
+// --sync consistent, not callback"; empty if the trials of both records belong together. Records
+// with more or fewer trials, other values of the same key or another name belong together.
 std::string WhatDiffers(const TrialsRecord& before, const TrialsRecord& now);
 
 // The first program that has changed; empty if none has.

@@ -49,7 +49,7 @@ void RemoveTrials(const fs::path& folder) {
     for (const fs::path& trial : inner) {
       if (IsTrial(trial)) fs::remove_all(trial);
     }
-    // What held trials, and nothing else.
+    // Removes a folder that held nothing but trials.
     if (!inner.empty() && EntriesOf(entry).empty()) fs::remove(entry);
   }
   fs::remove(folder / kRecord);
@@ -89,7 +89,7 @@ std::string EnterResultFolder(const std::string& path, bool restart, TrialsRecor
         path);
   }
   std::vector<fs::path> entries = EntriesOf(path);
-  // Left by a call that was killed while it wrote.
+  // Such a file is left by a call that was killed while it wrote.
   std::erase_if(entries, [](const fs::path& entry) {
     return entry.filename() == std::string(kRecord) + ".new";
   });

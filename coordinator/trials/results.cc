@@ -18,7 +18,7 @@ ResultJson LineOf(const TrialsPlan& plan, const TrialResult& result) {
   if (!plan.vary.empty()) line["values"] = ValuesOf(plan, result.trial.group);
   line["measures"] = ResultJson::object();
   for (const auto& [name, measure] : result.measures) {
-    // Counts look like counts.
+    // Counts are written as whole numbers.
     if (measure.unit == MeasureUnit::kCount && std::abs(measure.value) < 1e15) {
       line["measures"][name] = static_cast<std::int64_t>(measure.value);
     } else {

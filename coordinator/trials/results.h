@@ -1,4 +1,4 @@
-// What trials came to, in trials.json: after a call has ended, one line for each trial that is
+// The results of trials, in trials.json: after a call has ended, one line for each trial that is
 // done.
 #pragma once
 
@@ -15,8 +15,8 @@ struct TrialResult {
   Measures measures;
 };
 
-// The text of a trials.json (record.h) with the results of `plan`'s trials instead of any that it
-// has; as it was, if it is none.
+// The text of a trials.json (record.h) with the results of `plan`'s trials instead of any results
+// that the text has; the text as it was, if it is no trials.json.
 [[nodiscard]] std::string WithResults(const std::string& record, const TrialsPlan& plan,
                                       const std::vector<TrialResult>& results);
 

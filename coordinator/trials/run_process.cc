@@ -52,7 +52,8 @@ namespace {
 
 std::string RunProcess::Start(const RunProcessRequest& request, RunProcess* process) {
   RunProcess started;
-  // Inherited, so without MFD_CLOEXEC: the run sets that itself, before it has clients.
+  // The child inherits the descriptor, so it is without MFD_CLOEXEC: the run sets that flag itself,
+  // before it has clients.
   started.progress_.Reset(memfd_create("tcs-progress", 0));
   if (!started.progress_) return strerror(errno);
   std::vector<std::string> words{"tcsim"};
@@ -65,7 +66,7 @@ std::string RunProcess::Start(const RunProcessRequest& request, RunProcess* proc
   started.pid_ = fork();
   if (started.pid_ == 0) Become(request, argv.data(), parent);
   if (started.pid_ < 0) return strerror(errno);
-  // Not for the runs that come after it.
+  // The runs that come after this one must not inherit the descriptor.
   fcntl(started.progress_.get(), F_SETFD, FD_CLOEXEC);
   started.pidfd_.Reset(OpenPidfd(started.pid_));
   if (!started.pidfd_) return strerror(errno);

@@ -1,4 +1,4 @@
-// One trial's `tcsim run`, as a process of its own.
+// The `tcsim run` of one trial, as a process of its own.
 #pragma once
 
 #include <sched.h>
@@ -14,15 +14,17 @@ namespace tcs {
 
 struct RunProcessRequest {
   std::vector<std::string> arguments;  // of tcsim
-  std::string log;                     // gets its stdout and stderr
+  std::string log;                     // gets the process's stdout and stderr
   bool own_network = false;
-  cpu_set_t cpus;  // that it may use
+  cpu_set_t cpus;  // the CPUs that the process may use
 };
 
-// Ended, if it still lives, in order: by a SIGTERM, also when this process dies.
+// A run's process. The destructor ends it in order, by a SIGTERM, if it still lives; so does the
+// end of this process.
 class RunProcess {
  public:
-  // An empty error, or why there is no process. The caller must be the process's only thread.
+  // Returns an empty text, or why there is no process. The calling thread must be its process's
+  // only one.
   static std::string Start(const RunProcessRequest& request, RunProcess* process);
 
   RunProcess() = default;
@@ -30,18 +32,18 @@ class RunProcess {
   RunProcess& operator=(RunProcess&& other) noexcept;
   ~RunProcess();
 
-  // Readable once it has ended.
+  // Readable once the run has ended.
   int pidfd() const { return pidfd_.get(); }
-  // How far it says that it is, in virtual time.
+  // How far the run says that it is, in virtual time.
   std::int64_t virtual_ns() const;
   void EndInOrder() const;
-  // After its end: as of waitpid.
+  // To be called after the run's end. Returns the status as of waitpid.
   int Reap();
 
  private:
   pid_t pid_ = -1;
   UniqueFd pidfd_;
-  UniqueFd progress_;  // a file in memory that it writes one number to
+  UniqueFd progress_;  // a file in memory that the run writes one number to
 };
 
 }  // namespace tcs

@@ -26,8 +26,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kRetired = ".over";
 
-// Through the folder itself: network file systems ask for its entries anew each time it is opened,
-// while they may remember for long that a single file was not there.
+// The names are read through the folder itself: network file systems ask for its entries anew each
+// time it is opened, while they may remember for long that a single file was not there.
 std::vector<std::string> NamesIn(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -138,7 +138,7 @@ std::vector<bool> SlurmWorkFolder::Claimed(std::size_t count) const {
 }
 
 void SlurmWorkFolder::SetProgress(std::size_t trial, std::int64_t virtual_ns) const {
-  // It is for people who watch: nothing depends on it.
+  // Progress is for people who watch: nothing depends on it.
   static_cast<void>(WriteWhole(fmt::format("{}/progress/{}", path_, trial),
                                std::to_string(virtual_ns), Withstands::kCrash));
 }
@@ -196,7 +196,8 @@ std::vector<std::string> RetireWorkFolders(const std::string& results) {
       retired.push_back(name);
       path += over;
     }
-    // A run that has not ended yet may still write into it: then it is removed next time.
+    // A run that has not ended yet may still write into the folder: then the folder is removed next
+    // time.
     fs::remove_all(path, error);
   }
   fs::remove(all, error);

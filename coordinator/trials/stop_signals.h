@@ -15,7 +15,7 @@ namespace tcs {
 
 class StopSignals {
  public:
-  // They are blocked from here on, in this process's only thread.
+  // The signals are blocked from here on, in this process's only thread.
   StopSignals() {
     sigset_t stops;
     sigemptyset(&stops);
@@ -24,9 +24,9 @@ class StopSignals {
     fd_.Reset(signalfd(-1, &stops, SFD_CLOEXEC | SFD_NONBLOCK));
   }
 
-  // Readable when one has come.
+  // Readable when a signal has come.
   int fd() const { return fd_.get(); }
-  // Takes what has come. True if the first one is among it.
+  // Takes the signals that have come. True if the first signal is among them.
   bool Take() {
     const bool asked_before = request_.asked();
     signalfd_siginfo info;

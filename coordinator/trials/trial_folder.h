@@ -5,8 +5,8 @@
 
 namespace tcs {
 
-// Nothing is there afterwards, and no run of before writes into it any more; waits some seconds for
-// one that was killed. Empty on success, else one sentence.
+// Removes the folder. No earlier run writes into it any more afterwards; waits some seconds for a
+// run that was killed. Empty on success, else one sentence.
 [[nodiscard]] std::string RemoveTrialFolder(const std::string& folder);
 
 // The same, and the folder is made.

@@ -31,7 +31,7 @@ bool EqualsSecret(std::string_view given, std::string_view secret) {
   unsigned difference = given.size() == secret.size() ? 0 : 1;
   for (std::size_t i = 0; i < secret.size(); ++i) {
     const char one = i < given.size() ? given[i] : '\0';
-    // Not something that a compiler may leave the loop for.
+    // The volatile store keeps the compiler from leaving the loop early.
     static_cast<volatile unsigned&>(difference) =
         difference | static_cast<unsigned char>(one ^ secret[i]);
   }
@@ -61,8 +61,8 @@ std::string Auth::url() const {
          "/";
 }
 
-// A name may be made to stand for this machine by whoever owns it (DNS rebinding); a number is what
-// it is. What listens on this machine alone is asked for by its numbers alone.
+// The owner of a name can make it stand for this machine (DNS rebinding); a number is what it is. A
+// server that listens on this machine alone accepts only loopback numbers, besides localhost.
 bool Auth::IsOurHost(std::string_view host) const {
   const std::size_t colon = host.rfind(':');
   if (colon == host.npos || host.substr(colon + 1) != port_) return false;
@@ -79,7 +79,7 @@ bool Auth::IsOurOrigin(std::string_view origin, std::string_view host) const {
 
 std::optional<std::string_view> Auth::Authorize(const Request& request) const {
   if (!IsOurHost(request.host)) return {};
-  // A browser names the origin of whatever changes something.
+  // A browser names the origin of each request that changes something.
   if (!request.origin.empty() && !IsOurOrigin(request.origin, request.host)) return {};
   const std::string_view path = request.path;
   if (!path.starts_with('/')) return {};

@@ -1,7 +1,8 @@
-// Who may speak to the server of a live page: whoever was given its address, which has a secret in
-// it, and no page of another origin that a browser has open beside it.
+// Decides which requests the server of a live page answers: those of programs that were given its
+// address, which has a secret in it, and not those of a page of another origin that a browser has
+// open beside it.
 //
-// Pure, and thread-safe: nothing changes once it is made.
+// Pure, and thread-safe: an Auth does not change once it is made.
 #pragma once
 
 #include <optional>
@@ -10,21 +11,22 @@
 
 namespace tcs {
 
-// Equal or not in the time that the length of `secret` takes, whatever is given.
+// The comparison takes a time that depends on the length of `secret` alone, whatever is given.
 [[nodiscard]] bool EqualsSecret(std::string_view given, std::string_view secret);
 
-// 128 bits of the kernel's, in 32 hexadecimal digits. Empty if it has none to give.
+// 128 bits of the kernel's, in 32 hexadecimal digits. Empty if the kernel has none to give.
 [[nodiscard]] std::string MakeToken();
 
 class Auth {
  public:
-  // What is said of a request. Origin: empty if the browser, or another program, sends none.
+  // The parts of a request that decide. Origin: empty if the browser, or another program, sends
+  // none.
   struct Request {
     std::string_view path;
     std::string_view host, origin;
   };
 
-  // It listens at `address`, a number, at that port.
+  // The server listens at `address`, a number, and at `port`.
   Auth(std::string token, std::string address, int port);
 
   // The part of the path behind the token; none where the request is refused.

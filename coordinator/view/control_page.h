@@ -1,9 +1,9 @@
-// What a run and the server of its live page (tcsim-view) share: a page of memory, by its
-// descriptor. What people ask for stands in it as it is to be, not as what happened, so that
-// nothing is lost if the run looks late, and nothing waits for anybody.
+// A page of memory that a run and the server of its live page (tcsim-view) share by its descriptor.
+// Requests stand in the page as the state that people want, not as events, so that nothing is lost
+// if the run looks late, and nothing waits for anybody.
 //
-// Times are nanoseconds; virtual where not said otherwise. All fields are atomic by themselves. Who
-// writes a field is said above it.
+// Times are in nanoseconds, and virtual unless a comment says otherwise. Each field is atomic by
+// itself. The comment above a field says who writes it.
 #pragma once
 
 #include <atomic>
@@ -24,18 +24,18 @@ struct ControlPage {
   // The run begins with the first two of these; from then on the server writes all of them, and
   // `asked` last.
   std::atomic<double> pace{0};              // 0: as fast as it can
-  std::atomic<std::uint32_t> stands{0};     // 1: it is to stand
-  std::atomic<std::uint32_t> asked{0};      // how often something was asked for
-  std::atomic<std::int64_t> stepped_ns{0};  // all that was asked for in steps
+  std::atomic<std::uint32_t> stands{0};     // 1: the run is to stand
+  std::atomic<std::uint32_t> asked{0};      // how many requests there were
+  std::atomic<std::int64_t> stepped_ns{0};  // sum of the steps asked for
 
   // The run writes these.
   std::atomic<RunStage> stage{RunStage::kStarting};
-  std::atomic<std::uint32_t> taken{0};  // `asked`, as of the last look at it
+  std::atomic<std::uint32_t> taken{0};  // `asked`, as the run saw it last
   std::atomic<std::int64_t> now_ns{0}, end_ns{0};
   std::atomic<std::int64_t> real_ns{0};    // since the run began, real
-  std::atomic<std::int64_t> behind_ns{0};  // its pace, real, with what it has given up
+  std::atomic<std::int64_t> behind_ns{0};  // behind the run's pace, real, with the time given up
 
-  // The server: 1 once whoever watches knows that the run has ended.
+  // The server writes this: 1 once whoever watches knows that the run has ended.
   std::atomic<std::uint32_t> has_told{0};
   std::uint32_t unused = 0;
 };

@@ -1,5 +1,5 @@
-// What a page can ask of a run, in words: "stand", "go", "step 10000000" (nanoseconds), "pace 0.5"
-// (0: as fast as it can).
+// A request that a page can make of a run, in words: "stand", "go", "step 10000000" (nanoseconds),
+// "pace 0.5" (0: as fast as it can).
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@ struct ControlRequest {
   double pace = 0;
 };
 
-// None where it is none: steps are 1 ns to an hour, paces 0.001 to 1000, or 0.
+// None where `words` are no request: steps are 1 ns to an hour, paces 0.001 to 1000, or 0.
 [[nodiscard]] std::optional<ControlRequest> ParseControlRequest(std::string_view words);
 
-// Notes it for the run. One at a time.
+// Notes the request for the run. One call at a time.
 void Ask(const ControlRequest& asked, ControlPage* page);
 
 }  // namespace tcs

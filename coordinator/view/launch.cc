@@ -26,7 +26,8 @@ namespace tcs {
 
 namespace {
 
-// What it is told by, in the server.
+// The server's descriptors: of the page that it shares with the run, and of the pipe on which it
+// answers.
 constexpr int kPageFd = 3, kReadyFd = 4;
 
 [[noreturn]] void Become(const std::vector<char*>& argv, int page, int ready, pid_t parent) {
@@ -34,7 +35,7 @@ constexpr int kPageFd = 3, kReadyFd = 4;
   if (getppid() != parent) _exit(127);
   setpgid(0, 0);  // ^C is for the run, whose end the page is to show
   for (const int ignored : {SIGINT, SIGHUP, SIGPIPE, SIGTTOU}) signal(ignored, SIG_IGN);
-  // The numbers that the descriptors have may be among those that they get.
+  // The present number of a descriptor may be one that the descriptors are to get.
   const int copies[] = {fcntl(page, F_DUPFD, 10), fcntl(ready, F_DUPFD, 10)};
   const int null = open("/dev/null", O_RDWR);
   dup2(null, STDIN_FILENO);
@@ -111,7 +112,7 @@ std::variant<std::unique_ptr<ViewLink>, std::string> StartView(const ViewRequest
     return fmt::format("the server of the page cannot be started: {}", strerror(errno));
   }
   ready->write_end.Reset();
-  // Where it listens, or after an exclamation mark why it does not.
+  // The server says where it listens, or after an exclamation mark why it does not.
   const std::string said = ReadAll(ready->read_end.get());
   if (said.empty() || said[0] == '!') {
     waitpid(server, nullptr, 0);

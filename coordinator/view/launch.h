@@ -10,9 +10,9 @@
 namespace tcs {
 
 struct ViewRequest {
-  std::string server;                 // its program
-  std::string folder;                 // absolute; that the run writes to, and may not be there yet
-  std::string address = "127.0.0.1";  // at which it listens
+  std::string server;                 // the server's program
+  std::string folder;                 // absolute; the run writes to it; it may not be there yet
+  std::string address = "127.0.0.1";  // at which the server listens
   int port = 0;                       // 0: any that is free
 };
 

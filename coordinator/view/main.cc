@@ -2,9 +2,8 @@
 //
 //   tcsim-view FOLDER ADDRESS PORT            shows what is in a folder, until it is ended
 //   tcsim-view FOLDER ADDRESS PORT PAGE READY the same of a run that goes on: PAGE is the
-//   descriptor of
-//                                             the page that they share, at READY it says where it
-//                                             listens
+//                                             descriptor of the page that run and server share; at
+//                                             READY the server says where it listens
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -21,7 +20,7 @@ namespace {
 
 constexpr rlim_t kMostMemory = rlim_t{2} << 30;
 
-// Whatever somebody sends, the machine's memory is not for it.
+// Requests, whatever somebody sends, must not use up the machine's memory.
 void LimitMemory() {
 #ifndef __SANITIZE_ADDRESS__
   const rlimit limit{kMostMemory, kMostMemory};
@@ -33,7 +32,7 @@ int ServeRun(const std::string& folder, const std::string& address, int port, in
              tcs::UniqueFd ready) {
   const auto say = [&ready](const std::string& text) {
     const ssize_t n = write(ready.get(), text.data(), text.size());
-    static_cast<void>(n);  // nobody would be there to read it
+    static_cast<void>(n);  // if this fails, no reader is left
   };
   void* at =
       mmap(nullptr, sizeof(tcs::ControlPage), PROT_READ | PROT_WRITE, MAP_SHARED, page_fd, 0);

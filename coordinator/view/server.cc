@@ -32,7 +32,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t kMostBody = 256, kThreads = 24;
 constexpr auto kLookEvery = 60ms, kPatience = 2000ms, kWatches = 1500ms, kForOthers = 250ms;
 constexpr int kRefused = 403, kUnknown = 404, kNotUnderstood = 400, kConflict = 409;
-// Not for other pages, not kept, and nothing but what it is said to be.
+// An answer is not for other pages, is not kept, and is nothing but what it is said to be.
 const httplib::Headers kHeaders{
     {"Content-Security-Policy",
      "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src "
@@ -43,7 +43,7 @@ const httplib::Headers kHeaders{
     {"X-Content-Type-Options", "nosniff"},
     {"Cache-Control", "no-store"}};
 
-// As it is: to compress what stays on this machine is a waste.
+// Sends the text uncompressed: to compress what stays on this machine is a waste.
 void Give(httplib::Response& answer, std::string text, const char* type) {
   const auto shared = std::make_shared<const std::string>(std::move(text));
   answer.set_content_provider(
@@ -117,8 +117,8 @@ void ViewServer::Route() {
   http_->set_keep_alive_timeout(2);
   http_->set_keep_alive_max_count(1'000'000);
   http_->set_tcp_nodelay(true);
-  // All that there is is found here: before anything of a request's body is read, and nothing for
-  // whoever is not to know that it is there.
+  // This handler knows all that there is: it decides before anything of a request's body is read,
+  // and tells nothing to a client that is not to know what is there.
   http_->set_pre_routing_handler(
       [this](const httplib::Request& request, httplib::Response& answer) {
         const bool names_one_host = request.get_header_value_count("Host") == 1;
@@ -151,13 +151,13 @@ bool ViewServer::HasEnded() const {
 }
 
 void ViewServer::LookAtRun() {
-  // What an earlier run has left there is still to be removed.
+  // While the run starts, it has yet to remove what an earlier run has left in the folder.
   if (control_ != nullptr && control_->stage.load() == RunStage::kStarting) return;
   const bool is_end = HasEnded() && !std::exchange(looked_at_end_, HasEnded());
   if (!is_end && Clock::now() - looked_ < kLookEvery) return;
   looked_ = Clock::now();
   run_.Look();
-  if (is_end) run_.Look();  // all that is known now is all
+  if (is_end) run_.Look();  // the run has ended: nothing more comes
 }
 
 Json ViewServer::Status() const {
@@ -205,7 +205,7 @@ void ViewServer::GivePage(httplib::Response& answer) {
 
 void ViewServer::GiveNews(const httplib::Request& request, httplib::Response& answer) {
   const std::scoped_lock lock(mutex_);
-  // Before looking, so that nothing is missing that came before an end.
+  // HasEnded() comes before the look, so that nothing is missing that came before the end.
   const bool has_ended = HasEnded();
   Json status = Status();
   LookAtRun();

@@ -1,8 +1,9 @@
-// The server of a run's page: gives the page, what is new of the run, and notes what people want of
-// it. What it shows it reads from the run's folder, so that the run does not know of it.
+// The server of a run's page: gives the page and what is new of the run, and notes what people want
+// of the run. The server reads what it shows from the run's folder, so that the run does not know
+// of the server.
 //
-// A refused request is answered by a status alone. Requests are small, and whoever sends one slowly
-// is left after two seconds. Thread-safe where not said otherwise.
+// A refused request is answered by a status alone. Requests are small; the server gives up one that
+// is sent slowly after two seconds. Thread-safe where not said otherwise.
 #pragma once
 
 #include <atomic>
@@ -26,15 +27,15 @@ namespace tcs {
 
 class ViewServer {
  public:
-  // `control` is null where the run does not look at what people want; it outlives this.
+  // `control` outlives this. It is null where the run does not look at what people want.
   ViewServer(std::string folder, ControlPage* control);
   ~ViewServer();
 
   // Listens at a number; port 0: any that is free. Empty on success, else one sentence.
   [[nodiscard]] std::string Bind(const std::string& address, int port);
-  // What to open in a browser. Once it listens.
+  // The address to open in a browser. Valid once the server listens.
   const std::string& url() const { return url_; }
-  // Answers until the process ends; tells the run when all who watch know of its end.
+  // Answers until the process ends; tells the run when all who watch know of the run's end.
   void Serve();
 
  private:
@@ -56,7 +57,7 @@ class ViewServer {
   std::string url_;
   const Clock::time_point begun_ = Clock::now();
 
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // guards all below
   report::LiveRun run_;
   Clock::time_point looked_{};
   bool looked_at_end_ = false;

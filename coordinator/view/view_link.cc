@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMostTurns = 100;
 constexpr int kTurnMs = 10;
-// Of what the server says nothing is taken that a run could not do.
+// The link takes nothing from the server that a run could not do.
 constexpr double kMostPace = 1000;
 
 }  // namespace

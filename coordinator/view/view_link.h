@@ -1,9 +1,9 @@
 // The coordinator's end of the page that it shares with the server of a live page: what people ask
-// of the run, and what they are told of how it goes. It costs a load from memory to see that nobody
-// has asked for anything.
+// of the run, and what the run tells them of how it goes. To see that nobody has asked for anything
+// costs a load from memory.
 //
-// For the coordinator's thread only. The server is another process, and whatever it does the run
-// goes on.
+// For the coordinator's thread only. The server is another process, and the run goes on whatever
+// the server does.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class ViewLink {
   struct ControlRequests {
     double pace = 0;
     bool stands = false;
-    std::int64_t step_ns = 0;  // since the last time; 0: none
+    std::int64_t step_ns = 0;  // since the last Take(); 0: none
   };
   struct Status {
     RunStage stage = RunStage::kGoesOn;
@@ -36,16 +36,17 @@ class ViewLink {
 
   const std::string& url() const { return url_; }
 
-  // How the run begins. Before anybody is told the address: it would undo what they ask for.
+  // Sets how the run begins. Call it before anybody is told the address: it would undo what people
+  // ask for.
   void Begin(double pace, bool stands);
-  // What is wanted now; none where nothing was asked for since the last time.
+  // The requests as they stand now; none where nothing was asked for since the last call.
   std::optional<ControlRequests> Take();
   void Tell(const Status& status);
-  // True once the server has ended. A system call.
+  // True once the server has ended. Makes a system call.
   bool IsGone() const;
 
-  // The run has ended, at virtual `now_ns`: waits, in real time, until those who watch it know, a
-  // second at most.
+  // Tells that the run has ended, at virtual `now_ns`, and waits, in real time, until those who
+  // watch it know, a second at most.
   void Conclude(std::int64_t now_ns);
 
  private:

@@ -13,19 +13,19 @@ namespace tcs {
 
 class CommandLog {
  public:
-  // Of one channel's command.
+  // The times of one channel's command.
   struct Moment {
     VirtualTime sent;
     VirtualDuration latency;
   };
 
-  // What is written, also while there is no file.
+  // The listener gets every quantity that is written, also while there is no file.
   using Listener =
       std::function<void(Moment moment, std::string_view channel, std::string_view target,
                          std::string_view quantity, double value)>;
   void Tell(Listener listener) { listener_ = std::move(listener); }
 
-  // Empty on success, else one sentence. Until then nothing is written.
+  // Empty on success, else one sentence. Before Open nothing is written.
   [[nodiscard]] std::string Open(const std::string& path);
   void Write(Moment moment, std::string_view channel, std::string_view target,
              std::string_view quantity, double value) {

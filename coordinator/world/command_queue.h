@@ -1,9 +1,9 @@
-// Commands that have been sent for times before which others may still be sent: kept until that is
-// not so any more, and then given on in the order of their times.
+// Commands that have been sent for times before which other commands may still be sent. The queue
+// keeps them until no earlier command can come, and then gives them on in the order of their times.
 //
-// Programs do not wait with what they send here (shm/own_receivers.h), so that it comes in the
-// order in which they were dispatched. Commands for one instant stay in the order in which they
-// came.
+// Programs do not wait before they send commands here (shm/own_receivers.h), so the commands come
+// in the order in which the programs were dispatched. Commands for one instant stay in the order in
+// which they came.
 #pragma once
 
 #include <cstddef>
@@ -40,14 +40,14 @@ class CommandQueue final : public CommandSink {
   std::optional<GoalNames> GoalsOf(std::size_t channel) const override {
     return to_.GoalsOf(channel);
   }
-  // These act at no time.
+  // Refusals and notes act at no time.
   void Refuse(std::size_t channel, const std::string& why) override { to_.Refuse(channel, why); }
   void Note(const std::string& sentence) override { to_.Note(sentence); }
 
   std::size_t size() const { return kept_.size(); }
 
-  // Gives on what was sent by `until`; `before` is told of each one's time first. False if there
-  // was nothing.
+  // Gives on the commands that were sent by `until`; `before` is told of each command's time first.
+  // False if there was no command.
   bool PassOn(VirtualTime until, const std::function<void(VirtualTime)>& before);
 
  private:

@@ -184,7 +184,7 @@ void Commands::Take(std::size_t channel, const CommandSent& sent, const PlanarSp
   if (timeout > VirtualDuration{}) on.halts = sent.at + timeout;
 }
 
-// Makes all wheels turn as the robot is to go.
+// Makes all wheels turn so that the robot goes as `speed` says.
 void Commands::Turn(const Channel& channel, VirtualTime sent, const PlanarSpeed& speed) {
   const JointDriveSpec& joints = *channel.spec.joints;
   const WheelDriveSpec& wheels = *joints.wheels;

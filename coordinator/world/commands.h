@@ -1,5 +1,5 @@
-// The commands of a run: what comes in on their channels, and when it acts. Keeps account of it,
-// for the sentences about channels where nothing came in, or nothing of use.
+// The commands of a run: which commands come in on their channels, and when they act. Keeps account
+// of them, for the sentences about channels where nothing came in, or nothing of use.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class Commands final : public CommandSink {
   using Act =
       std::function<void(VirtualTime sent, VirtualDuration latency, int body, const Wrench&)>;
 
-  // The same of a joint, a rotor or a link, as Dynamics numbers them.
+  // The same, for a joint, a rotor or a link, as Dynamics numbers them.
   using Drive =
       std::function<void(VirtualTime sent, VirtualDuration latency, int joint, const JointDrive&)>;
   using Spin =
@@ -32,8 +32,8 @@ class Commands final : public CommandSink {
   using Push = std::function<void(VirtualTime sent, VirtualDuration latency, int link, WrenchFrame,
                                   const Wrench&)>;
 
-  // `warn` is told of the first thing on each channel that was no command. `read` is asked by
-  // firmware that follows trajectories.
+  // `warn` is told of the first thing on each channel that was no command. Firmware that follows
+  // trajectories asks `read`.
   Commands(std::function<void(const std::string&)> warn, Act act, Drive drive = {}, Spin spin = {},
            Push push = {}, TrajectoryFollower::ReadJoints read = {})
       : warn_(std::move(warn)),
@@ -43,10 +43,10 @@ class Commands final : public CommandSink {
         push_(std::move(push)),
         read_(std::move(read)) {}
 
-  // The scenario's channels; before anything comes in. `bodies` are what the bodies of the world
-  // are called.
+  // The scenario's channels; before anything comes in. `bodies` are the names of the world's
+  // bodies.
   void Open(const std::vector<CommandChannelSpec>& specs, std::vector<std::string> bodies = {});
-  // What is given to the physics is written there, too.
+  // Commands that are given to the physics are written there, too.
   CommandLog& log() { return log_; }
 
   void Take(std::size_t channel, const CommandSent& sent, const Wrench& wrench) override;
@@ -59,20 +59,20 @@ class Commands final : public CommandSink {
   void Refuse(std::size_t channel, const std::string& why) override;
   void Note(const std::string& sentence) override { warn_(sentence); }
 
-  // When firmware does something by itself next.
+  // The time at which firmware does something by itself next.
   VirtualTime NextStop() const;
-  // It does what is due by `until`, at its own times. No command for an earlier time comes any
-  // more.
+  // Firmware does what is due by `until`, each thing at its own time. No command for an earlier
+  // time comes any more.
   void ActUntil(VirtualTime until);
 
-  // Of all channels, what acted.
+  // The number of commands that acted, on all channels.
   std::int64_t taken() const { return taken_; }
 
-  // At the end of the run: what there is to say about the channel. Empty where commands came in and
-  // no more was none than what was said at once.
+  // At the end of the run: a sentence about the channel. Empty where messages came in and at most
+  // one was no command: `warn` was told of that one at once.
   std::string ComplaintAbout(std::size_t channel, const Inlet::Place& place,
                              const std::string& body) const;
-  // The same about the joints and rotors of all channels.
+  // The same, for the joints and rotors of all channels.
   std::vector<std::string> ComplaintsAboutActuators() const { return account_.Complaints(); }
 
  private:
@@ -82,7 +82,7 @@ class Commands final : public CommandSink {
     std::vector<std::string> targets{};   // likewise, or of what is pushed
     std::vector<std::string>
         goal_names{};                 // of the joints that it drives, then of those that follow
-    bool has_named_follower = false;  // which has been said
+    bool has_named_follower = false;  // and `warn` was told
     std::int64_t taken = 0, refused = 0;
     VirtualTime halts = VirtualTime::Never();  // unless a command comes before
     std::optional<TrajectoryFollower> follower{};

@@ -1,4 +1,4 @@
-// What touches what, and with which force, as lines of contacts.csv.
+// Which things touch each other, and with which force, as lines of contacts.csv.
 #pragma once
 
 #include <string>
@@ -19,11 +19,11 @@ class ContactLines {
   void Write(Dynamics& dynamics, CsvFile* file);
 
  private:
-  std::vector<std::string> links_, fixtures_;  // their names
+  std::vector<std::string> links_, fixtures_;  // names
   std::vector<ContactForce> contacts_;         // memory of Write
 };
 
-// What `first` feels of `second`, at x y z: the normal points towards `first`.
+// The force that `first` feels from `second`, at x y z: the normal points towards `first`.
 inline constexpr std::string_view kContactsCsvHead =
     "time_s,first,second,x_m,y_m,z_m,normal_x,normal_y,normal_z,force_x_n,force_y_n,force_z_n";
 

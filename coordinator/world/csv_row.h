@@ -13,7 +13,7 @@ namespace tcs {
 inline constexpr std::string_view kBodiesCsvHead =
     "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps\n";
 
-// A time in seconds, as all of them have it.
+// A time in seconds, as all these tables have it.
 class CsvTime {
  public:
   explicit CsvTime(VirtualTime at);

@@ -12,9 +12,9 @@ namespace tcs {
 
 class DueLinks {
  public:
-  // Those whose looks are due at `now`, which the dynamics have come to.
+  // Reads the links whose looks are due at `now`, the time that the dynamics have come to.
   void Read(const Sensors& sensors, VirtualTime now, Dynamics& dynamics);
-  // What was read of these; all of them are due.
+  // The states that were read of `links`; all of `links` are due.
   void Give(std::span<const int> links, std::span<LinkState> states) const;
 
  private:

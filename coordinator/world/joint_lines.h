@@ -12,11 +12,11 @@ namespace tcs {
 class JointLines {
  public:
   JointLines() = default;
-  // Of all joints of the world's models that have one coordinate: MODEL/JOINT.
+  // Lines of all joints of the world's models that have one coordinate: MODEL/JOINT.
   explicit JointLines(const WorldSpec& world);
 
   bool empty() const { return joints_.empty(); }
-  // A line for each, as they are at dynamics.Now().
+  // Writes a line for each joint, as it is at dynamics.Now().
   void Write(Dynamics& dynamics, CsvFile* file);
 
  private:

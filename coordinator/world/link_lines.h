@@ -8,19 +8,19 @@
 
 namespace tcs {
 
-// What the links of the world's models are called there, as Dynamics numbers them: MODEL/LINK, or
-// MODEL where it has only the one.
+// The names there of the links of the world's models, as Dynamics numbers the links: MODEL/LINK, or
+// MODEL where the model has only one link.
 std::vector<std::string> NamesOfLinks(const WorldSpec& world);
 
 class LinkLines {
  public:
   LinkLines() = default;
-  // Of all links of the world's models.
+  // Lines of all links of the world's models.
   explicit LinkLines(const WorldSpec& world);
 
-  // A line for each, as they are at dynamics.Now(): the link's frame, in the world.
+  // Appends a line for each link, as it is at dynamics.Now(): the link's frame, in the world.
   void Append(Dynamics& dynamics, std::string* text);
-  // As they were then.
+  // The links' states at the last Append.
   const std::vector<LinkState>& states() const { return states_; }
 
  private:

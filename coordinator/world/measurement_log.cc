@@ -42,7 +42,8 @@ std::unique_ptr<Outlet> MeasurementLog::Wrap(const SensorChannelSpec& sensor,
   return std::make_unique<LoggedOutlet>(*this, sensor, std::move(outlet));
 }
 
-// What is not finite (nothing within reach) is no number for those who draw it.
+// A value that is not finite (nothing within reach) is left out: it is no number for programs that
+// draw the file.
 void MeasurementLog::Write(const std::string& channel, const std::vector<SensorField>& fields,
                            const Reading& reading) {
   if (!file_.is_open()) return;

@@ -1,5 +1,6 @@
-// What sensors measured, of a run that is recorded: sensors.csv, a line for each quantity of a
-// sample, with its components. Not what is of hundreds of numbers: scans, clouds, images.
+// The measurements of the sensors in a run that is recorded: sensors.csv, a line for each quantity
+// of a sample, with its components. Measurements of hundreds of numbers are left out: scans,
+// clouds, images.
 #pragma once
 
 #include <memory>
@@ -14,15 +15,15 @@ namespace tcs {
 
 class MeasurementLog {
  public:
-  // Until then nothing is written. Empty on success, else one sentence.
+  // Before Open nothing is written. Empty on success, else one sentence.
   [[nodiscard]] std::string Open(const std::string& path);
   void Flush() { file_.Flush(); }
   [[nodiscard]] std::string Close() { return file_.Close(); }
 
-  // Whatever is sent there is written here, too. The sensor and this outlive it.
+  // An outlet whose readings are written here, too. The sensor and the log outlive the outlet.
   std::unique_ptr<Outlet> Wrap(const SensorChannelSpec& sensor, std::unique_ptr<Outlet> outlet);
 
-  // What a sensor of bodies tells of them is in `fields`.
+  // `fields` are the quantities that a sensor of bodies tells of them.
   void Write(const std::string& channel, const std::vector<SensorField>& fields,
              const Reading& reading);
 

@@ -10,7 +10,8 @@
 namespace tcs {
 namespace {
 
-// Each field has a stream of its own: a noise that is added to one leaves the others as they were.
+// Each field has a stream of its own: a noise that is added to one field leaves the others as they
+// were.
 RandomStream StreamOf(std::uint64_t seed, RandomPurpose purpose, std::size_t field,
                       std::uint64_t sample) {
   return {seed ^ 0xd1342543de82ef95 * (field + 1), purpose, sample};
@@ -18,7 +19,7 @@ RandomStream StreamOf(std::uint64_t seed, RandomPurpose purpose, std::size_t fie
 
 }  // namespace
 
-// Of one sample.
+// The errors of one sample.
 class MeasurementNoise::Draws {
  public:
   Draws(const MeasurementNoise& noise, std::uint64_t sample) : noise_(noise), sample_(sample) {}
@@ -88,7 +89,8 @@ class MeasurementNoise::Draws {
   void Turn(MeasuredField field, std::array<double, 4>* orientation) const {
     *orientation = Turned(*orientation, ErrorOf(field));
   }
-  // Many of one field. To each number that is one; all have a place in the stream.
+  // Adds errors to many numbers of one field. Only finite numbers get an error, but every number
+  // has a place in the stream.
   class Numbers {
    public:
     Numbers(const Draws& draws, MeasuredField field)

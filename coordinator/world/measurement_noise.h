@@ -1,6 +1,6 @@
-// What is wrong with what a sensor of a robot measures: noise and bias.
+// The errors of what a robot's sensor measures: noise and bias.
 //
-// Pure. What happens to a sample depends on the sensor's seed and the sample's number alone.
+// Pure. The errors of a sample depend on the sensor's seed and the sample's number alone.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ class MeasurementNoise {
   MeasurementNoise() = default;
   MeasurementNoise(const MeasurementErrors& errors, std::uint64_t seed);
 
-  // Adds what is wrong with the sample of that number, of the same number always the same, and says
-  // how much that may be. A bias that is known does not count there.
+  // Adds the errors of the sample of that number (a number always has the same errors), and sets
+  // the variances of the measurement. A bias that is known does not count there.
   void Disturb(std::uint64_t sample, Measurement* measurement) const;
 
  private:

@@ -7,7 +7,8 @@
 
 namespace tcs {
 
-// What of a sensor's randomness is for what: streams that know nothing of each other.
+// The purposes of a sensor's random numbers. The streams of two purposes know nothing of each
+// other.
 enum class RandomPurpose : std::uint64_t { kFate = 1, kNoise, kBias };
 
 // Steele, Lea and Flood's SplitMix64.

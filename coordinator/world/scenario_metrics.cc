@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-// Where the number is in the list, to which it is added if it is not there.
+// The place of `number` in the list; a number that is not there is added.
 std::size_t PlaceIn(std::vector<int>* numbers, std::size_t number) {
   const auto found = std::ranges::find(*numbers, static_cast<int>(number));
   const auto place = static_cast<std::size_t>(found - numbers->begin());
@@ -22,7 +22,7 @@ std::size_t PlaceIn(std::vector<int>* numbers, std::size_t number) {
   return place;
 }
 
-// About the x, y and z axes, in that order of turning about fixed axes (REP-103).
+// The angle about the x, y or z axis, in that order of turning about fixed axes (REP-103).
 double AngleOf(std::size_t axis, const std::array<double, 4>& q) {
   const auto [x, y, z, w] = q;
   switch (axis) {
@@ -35,7 +35,7 @@ double AngleOf(std::size_t axis, const std::array<double, 4>& q) {
   }
 }
 
-// One of kMotionQuantities.
+// The value of kMotionQuantities[part].
 double MotionOf(std::size_t part, const std::array<double, 3>& position,
                 const std::array<double, 4>& orientation, const std::array<double, 3>& linear,
                 const std::array<double, 3>& angular) {
@@ -82,7 +82,7 @@ void ScenarioMetrics::Open(const Scenario& scenario) {
   scenario_ = &scenario;
   const auto add = [&](const MetricSpec& spec, std::string_view from) {
     const VirtualDuration every = spec.every > VirtualDuration{} ? spec.every : scenario.csv_period;
-    // The first multiple within.
+    // The first multiple of `every` that is not before `from`.
     const std::int64_t before = (spec.from.ns() + every.ns() - 1) / every.ns();
     const auto next = VirtualTime::FromNanoseconds(before * every.ns());
     metrics_.push_back({&spec, from, spec.expression.Needs(), every, next, next});
@@ -158,7 +158,7 @@ void ScenarioMetrics::HearCommand(CommandLog::Moment moment, std::string_view ch
         (wanted.of.empty() || wanted.of == of) &&
         scenario_->commands[wanted.index].name == channel) {
       std::deque<Commanded>& commanded = commanded_[i];
-      // No value is taken any more for a time before this was sent.
+      // No value is taken any more for a time before this command was sent.
       while (commanded.size() > 1 && commanded[1].acts < moment.sent) commanded.pop_front();
       commanded.push_back({moment.sent + moment.latency, value});
     }
@@ -191,7 +191,7 @@ void ScenarioMetrics::Read(Dynamics& dynamics) {
         break;
       }
       case QuantitySpec::Kind::kCommand:
-        // What is sent for this instant may come in later.
+        // A command for this instant may come in later.
         while (!commanded_[i].empty() && commanded_[i].front().acts < now) {
           values_[i] = commanded_[i].front().value;
           commanded_[i].pop_front();

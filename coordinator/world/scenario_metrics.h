@@ -1,7 +1,7 @@
-// The metrics that a scenario names, evaluated while the world goes on: each at the virtual times
-// 0, `every`, 2 `every`, ... from its `from` to its `until`, when no command for an earlier time
-// can come any more. A command that acts, or a sample that is taken, at that very instant has not
-// changed the state, but the sample counts among the values of its channel.
+// The metrics that a scenario names, evaluated while the world goes on: each metric at the virtual
+// times 0, `every`, 2 `every`, ... from its `from` to its `until`, when no command for an earlier
+// time can come any more. A command that acts, or a sample that is taken, at that very instant has
+// not changed the state, but the sample counts among the values of its channel.
 //
 // Reading changes nothing of how bodies move. Not thread-safe.
 #pragma once
@@ -27,23 +27,23 @@ class ScenarioMetrics {
   ScenarioMetrics(const ScenarioMetrics&) = delete;
   ScenarioMetrics& operator=(const ScenarioMetrics&) = delete;
 
-  // Once, before all others. The scenario outlives this.
+  // Called once, before all others. The scenario outlives this.
   void Open(const Scenario& scenario);
-  // Whatever is sent at the outlet of the scenario's sensor of that number is heard here, if a
-  // metric is of it. This outlives what is returned.
+  // An outlet for the scenario's sensor of that number whose readings are heard here, if a metric
+  // is of the sensor. This object outlives the outlet.
   std::unique_ptr<Outlet> Wrap(std::size_t sensor, std::unique_ptr<Outlet> outlet);
   // From now on values are taken; the book outlives this, which outlives the use of the log that
   // tells of commands.
   void WriteInto(MetricBook& book, CommandLog& commands);
 
-  // When the next value is due; never while nobody takes it.
+  // When the next value is due; never while no book takes values.
   VirtualTime NextStop() const;
   // Takes the values that are due at dynamics.Now().
   void Evaluate(Dynamics& dynamics);
 
  private:
   class HeardOutlet;
-  // What acts from an instant on.
+  // A commanded value that acts from an instant on.
   struct Commanded {
     VirtualTime acts;
     double value;
@@ -65,10 +65,10 @@ class ScenarioMetrics {
   const Scenario* scenario_ = nullptr;
   MetricBook* book_ = nullptr;
   std::vector<Metric> metrics_;
-  // Of each quantity; not finite: it is not known.
+  // The value of each quantity; not finite: the value is not known.
   std::vector<double> values_;
-  std::vector<std::deque<Commanded>> commanded_;  // of each quantity: what acts later
-  // What is read of the dynamics at once, and into which quantities.
+  std::vector<std::deque<Commanded>> commanded_;  // of each quantity: those that act later
+  // The bodies, links and joints that are read of the dynamics at once, and their states.
   std::vector<int> bodies_, links_, joints_;
   std::vector<BodyState> body_states_;
   std::vector<LinkState> link_states_;

@@ -99,7 +99,7 @@ class SceneWriter {
     return json;
   }
 
-  // Where the file is, for whoever draws it; empty: nobody knows.
+  // The path of the file, for programs that draw it; empty: not known.
   static std::string PathOf(const MeshFile& mesh, const PackagePath& files,
                             const std::string& urdf) {
     try {
@@ -141,7 +141,7 @@ class SceneWriter {
     return {{"kind", "mesh"}, {"mesh", place->second}};
   }
 
-  // Those whose rays lie in a plane.
+  // The sensors whose rays lie in a plane.
   Json Sensors() const {
     Json sensors = Json::array();
     for (const SensorChannelSpec& channel : scenario_.sensors) {

@@ -1,5 +1,5 @@
-// What there is to see in a scenario's world, as scene.json has it (docs/RESULTS.md): shapes, what
-// they are fixed to, and the sensors that have rays. Where things are at a time is in bodies.csv.
+// The visible things of a scenario's world, as scene.json has them (docs/RESULTS.md): shapes, what
+// they are fixed to, and the sensors that have rays. bodies.csv says where things are at a time.
 #pragma once
 
 #include <string>

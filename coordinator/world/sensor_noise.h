@@ -1,7 +1,7 @@
-// What is wrong with a sensor's readings: noise, bias, samples that are lost or late.
+// The errors of a sensor's readings: noise, bias, samples that are lost or late.
 //
-// Pure. What happens to a sample depends on the sensor's seed and the sample's number alone: not on
-// other sensors, nor on who ran when.
+// Pure. The errors of a sample depend on the sensor's seed and the sample's number alone: not on
+// other sensors, nor on which thread ran when.
 #pragma once
 
 #include <array>
@@ -21,9 +21,9 @@ class SensorNoise {
     bool is_lost = false;
     VirtualDuration late{};  // beyond its latency
   };
-  // Of the sample of that number.
+  // The fate of the sample of that number.
   Fate FateOf(std::uint64_t sample) const;
-  // Adds what is wrong with the sample's values; of the same number always the same.
+  // Adds the errors of the sample's values; a number always has the same errors.
   void Disturb(std::uint64_t sample, Reading* reading) const;
 
  private:
@@ -33,7 +33,7 @@ class SensorNoise {
   void DisturbJoints(std::uint64_t sample, Reading* reading) const;
 
   SensorErrors errors_;
-  bool is_exact_;               // its values are
+  bool is_exact_;               // values have no errors
   std::vector<Biases> biases_;  // of each body
   std::vector<JointBiases> joint_biases_;
 };

@@ -29,7 +29,7 @@ void Sensors::AddInstrument(std::unique_ptr<Instrument> instrument, SensorTiming
   sensors_.back().measurement_noise = MeasurementNoise(measurement_errors, errors.seed);
 }
 
-// When the sample is whole that is being taken, or is taken next.
+// The time at which the sample that is being taken, or is taken next, is whole.
 VirtualTime Sensors::NextSample(const Sensor& sensor) {
   if (sensor.instrument == nullptr) return sensor.next;
   const Instrument::Looks looks = sensor.instrument->looks();
@@ -111,7 +111,7 @@ bool Sensors::Look(Sensor& sensor, VirtualTime now, const Eyes& eyes) {
   return SendOff(sensor, now, std::move(reading));
 }
 
-// What was read whole `now`.
+// Sends off a reading that has become whole at `now`.
 bool Sensors::SendOff(Sensor& sensor, VirtualTime now, Reading reading) {
   const std::uint64_t number = sensor.number++;
   const SensorNoise::Fate fate = sensor.noise.FateOf(number);
@@ -119,7 +119,7 @@ bool Sensors::SendOff(Sensor& sensor, VirtualTime now, Reading reading) {
   sensor.noise.Disturb(number, &reading);
   sensor.measurement_noise.Disturb(number, &reading.measured);
   ++samples_;
-  // None overtakes another.
+  // No reading overtakes another.
   sensor.last_arrives = std::max(sensor.last_arrives, now + sensor.timing.latency + fate.late);
   return sensor.outlet->Send(reading, sensor.last_arrives);
 }

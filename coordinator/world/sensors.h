@@ -1,7 +1,7 @@
-// The sensors of a run: when each looks at the world, and that what it reads goes out. The clock is
-// one that looks at no body.
+// The sensors of a run: when each looks at the world, and that its readings go out. The clock is a
+// sensor that looks at no body.
 //
-// Not thread-safe. It neither moves the dynamics nor knows what carries its readings.
+// Not thread-safe. Sensors neither move the dynamics nor know what carries their readings.
 #pragma once
 
 #include <array>
@@ -25,43 +25,44 @@
 namespace tcs {
 
 struct SensorTiming {
-  VirtualDuration
-      period;  // between samples, of which the first is at time 0; 0: it is the only one
+  VirtualDuration period;   // between samples, of which the first is at time 0; 0: only that one
   VirtualDuration latency;  // from the sample to its arrival
 };
 
 class Sensors {
  public:
-  // How body `body` of the world is at the instant.
+  // The state of body `body` of the world at the instant.
   using Read = std::function<BodyState(int body)>;
   struct Body {
     int index;         // in the world
     std::string name;  // in readings
   };
 
-  // `gravity_mps2` is what accelerometers do not feel.
+  // `gravity_mps2` is the acceleration that accelerometers do not feel.
   explicit Sensors(const std::array<double, 3>& gravity_mps2 = {}) : gravity_mps2_(gravity_mps2) {}
 
   // The outlet outlives this.
   void Add(std::vector<Body> bodies, SensorTiming timing, const SensorErrors& errors,
            Outlet& outlet);
-  // One of joints.
+  // Adds a sensor of joints.
   void AddJoints(const JointGroup& joints, SensorTiming timing, const SensorErrors& errors,
                  Outlet& outlet);
-  // One of a robot that looks by itself.
+  // Adds a sensor of a robot that looks by itself.
   void AddInstrument(std::unique_ptr<Instrument> instrument, SensorTiming timing,
                      const SensorErrors& errors, const MeasurementErrors& measurement_errors,
                      Outlet& outlet);
 
-  // When there is something to do next, and when something may reach a program next.
+  // The next time at which there is something to do, and the next at which something may reach a
+  // program.
   VirtualTime NextStop() const;
   VirtualTime NextArrival() const;
 
-  // Appends the bodies that samples are due of, and the links that looks are. One may be there more
-  // than once.
+  // Appends the bodies of which samples are due, and the links of which looks are due. A body or a
+  // link may be there more than once.
   void AddDueBodies(VirtualTime now, std::vector<int>* bodies) const;
   void AddDueLinks(VirtualTime now, std::vector<int>* links) const;
-  // Takes the samples that are due, and has arrived what is due. True if something went out.
+  // Takes the samples that are due, and hands over the readings that are due to arrive. True if
+  // something went out.
   bool Act(VirtualTime now, const Read& read, const Eyes& eyes = {});
 
   std::int64_t samples() const { return samples_; }
@@ -81,7 +82,7 @@ class Sensors {
     std::unique_ptr<Instrument> instrument{};
     MeasurementNoise measurement_noise{};
     VirtualTime began{};  // the sample
-    int look = 0;         // of it, which comes next
+    int look = 0;         // of the sample, the next
   };
   static VirtualTime NextSample(const Sensor& sensor);
   bool Sample(Sensor& sensor, VirtualTime now, const Read& read, const Eyes& eyes);

@@ -1,8 +1,8 @@
 // The firmware that leads joints along trajectories: new setpoints of their servos at a steady
 // rate.
 //
-// What a trajectory begins from is known only when its time has come and no command for an earlier
-// one does any more, so nothing is done before ActUntil.
+// The positions that a trajectory begins from are known only when its time has come and no command
+// for an earlier time comes any more, so nothing is done before ActUntil.
 #pragma once
 
 #include <deque>
@@ -19,7 +19,7 @@ namespace tcs {
 
 class TrajectoryFollower {
  public:
-  // How joints, as Dynamics numbers them, are at a time; as many states as joints.
+  // Reads the states of joints, as Dynamics numbers them, at a time; as many states as joints.
   using ReadJoints =
       std::function<void(VirtualTime at, std::span<const int>, std::span<JointState>)>;
   // From `at` on these are the goals of the channel's joints.
@@ -28,8 +28,8 @@ class TrajectoryFollower {
   TrajectoryFollower(const JointGroup& group, VirtualDuration period)
       : group_(group), period_(period) {}
 
-  // The trajectory came at `sent`. It replaces what is going on when it starts, and what was to
-  // start later.
+  // The trajectory came at `sent`. It replaces the trajectory that is going on when it starts, and
+  // trajectories that were to start later.
   void Follow(VirtualTime sent, const JointTrajectory& trajectory);
 
   VirtualTime NextStop() const;
@@ -37,17 +37,17 @@ class TrajectoryFollower {
 
  private:
   struct Path {
-    VirtualTime start;   // that its points count from
-    VirtualTime begins;  // not before it came
+    VirtualTime start;   // the points' times count from it
+    VirtualTime begins;  // not before the trajectory came
     JointTrajectory trajectory;
-    std::vector<double> from{};  // where its joints are when it begins
+    std::vector<double> from{};  // where the joints are when it begins
   };
   void Begin(Path path, const ReadJoints& read);
 
   JointGroup group_;
   VirtualDuration period_;
-  std::deque<Path> waiting_;  // in the order in which they begin
-  std::optional<Path> path_;  // that is being followed
+  std::deque<Path> waiting_;  // in the order of their beginnings
+  std::optional<Path> path_;  // the path being followed
   VirtualTime next_ = VirtualTime::Never();
 };
 

@@ -159,7 +159,7 @@ void World::Begin(std::int64_t realtime_offset_ns) {
 }
 
 std::string World::OpenRecords(const std::string& folder) {
-  // Those of an earlier run would be taken for this one's.
+  // Files of an earlier run would be taken for this run's.
   std::error_code ignored;
   for (const char* file : {"/scene.json", "/bodies.csv", "/joints.csv", "/contacts.csv",
                            "/commands.csv", "/sensors.csv"}) {
@@ -191,7 +191,7 @@ std::string World::OpenRecords(const std::string& folder) {
   return error;
 }
 
-// Whole lines: what a run leaves that is killed has no halves.
+// Writes whole lines: the file of a run that is killed has no half lines.
 void World::FlushBodies() {
   csv_ << csv_text_;
   csv_text_.clear();
@@ -252,7 +252,8 @@ void World::WriteStates() {
   if (csv_text_.size() > kCsvAtOnce) FlushBodies();
 }
 
-// All that is read now at once: what many bodies need is integrated side by side.
+// Reads all bodies that are due now at once: the steps that many bodies need are integrated side by
+// side.
 void World::ReadDue() {
   if (csv_.is_open() && next_csv_ <= progress_) {
     due_ = all_bodies_;
@@ -293,7 +294,7 @@ bool World::Advance(VirtualTime limit) {
              dynamics_->ReadJoints(dynamics_->Now(), joints, states);
            }});
   metrics_.Evaluate(*dynamics_);
-  if (sent) ReceiveFromTerminals(progress_);  // what they echo
+  if (sent) ReceiveFromTerminals(progress_);  // the terminals' echo
   FindNextStop();
   return sent;
 }
@@ -304,15 +305,16 @@ void World::LetLastCommandsAct(VirtualTime end) {
   commands_.ActUntil(end);
 }
 
-// The dynamics integrate what somebody reads, and nobody does before the next stop. Others may
-// still be woken earlier than `now`, but no further back than the drift bound.
+// The dynamics integrate what is read, and nothing reads them before the next stop. Other threads
+// may still be woken earlier than `now`, but no further back than the drift bound.
 void World::Lead(VirtualTime now, VirtualTime to) {
   if (PassOnSentUntil(now - scenario_.drift_bound)) FindNextStop();
   Settle(std::min(now - scenario_.drift_bound, commands_.NextStop()));
   progress_ = std::max(progress_, to);
 }
 
-// Firmware acts until each of them. True if there were any.
+// Passes on the commands that were sent by `time`. Firmware acts until each command's time first.
+// True if there was a command.
 bool World::PassOnSentUntil(VirtualTime time) {
   return queue_.PassOn(time, [this](VirtualTime at) { commands_.ActUntil(at); });
 }
@@ -344,7 +346,8 @@ void World::ReceivePosted(std::size_t receiver, std::string_view datagram,
   NoteSent(sent.at);
 }
 
-// Where the dynamics lead it is taken all the same once nobody can send for an earlier time.
+// Where the dynamics lead, the command is taken all the same once no thread can send for an earlier
+// time.
 void World::NoteSent(VirtualTime at) {
   if (at < progress_) next_stop_ = std::min(next_stop_, at);
 }
@@ -374,14 +377,14 @@ void World::NameReceivers(shm::OwnReceivers& receivers) {
     receivers.addresses[receivers.count++] = receiver.address;
     inlet_of_receiver_.push_back(receiver.inlet);
   }
-  // Where robots have networks of their own what they send takes its way there.
+  // Where robots have networks of their own, their datagrams take their way there.
   if (!found.empty() && !scenario_.network) receivers.network = NetworkOf(fds[found[0].inlet]);
 }
 
 std::vector<std::size_t> World::CommandsOfReceivers() const {
   std::vector<std::size_t> commands;
   for (const std::size_t inlet : inlet_of_receiver_) {
-    // In a recording inlets are wrapped: it is the descriptor that they have in common.
+    // In a recording inlets are wrapped: a wrapped inlet has the descriptor of its inlet.
     const auto of =
         std::ranges::find(channels_.inlet_of, channels_.inlets[inlet]->fd(), &Inlet::fd);
     TCS_CHECK(of != channels_.inlet_of.end());

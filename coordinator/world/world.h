@@ -35,11 +35,11 @@ std::string WhyNoWorld(const Scenario& scenario);
 
 class World {
  public:
-  // `warn` is told of what comes in on a channel and is no command.
+  // `warn` is told of messages that come in on a channel and are no commands.
   explicit World(std::function<void(const std::string&)> warn);
 
-  // Claims what the channels need of the host. Empty on success, else one sentence. The endpoints
-  // are for those on DDS; they outlive this. With a `watch` RecordInto follows.
+  // Claims what the channels need of the host. Empty on success, else one sentence. `ends` is for
+  // the channels on DDS, and outlives this. With a `watch` RecordInto follows.
   [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends,
                                  const MakeAt& make_at, DatagramWatch* watch = nullptr,
                                  bool is_recorded = false);
@@ -47,41 +47,41 @@ class World {
   void InterruptBy(const std::function<bool()>& asked) {
     if (present()) dynamics_->InterruptBy(asked);
   }
-  // Other processors that a run with its turns on `home` may use, of which other runs have none; to
-  // be asked before this process is bound to one.
+  // Other processors that a run with its turns on `home` may use, and that no other run has; to be
+  // asked before this process is bound to one.
   static std::vector<int> ProcessorsBeside(int home, int host_cpus);
-  // The dynamics do (Dynamics::UseProcessors).
+  // The dynamics use `cpus` (Dynamics::UseProcessors).
   void UseProcessors(const std::vector<int>& cpus);
   // The run begins; virtual CLOCK_REALTIME is so far ahead of virtual time.
   void Begin(std::int64_t realtime_offset_ns);
 
-  // What the world looks like, how it moved and what moved it are written into this folder:
-  // scene.json, bodies.csv, joints.csv, commands.csv, contacts.csv if the scenario asks for it, and
-  // sensors.csv if it is recorded; nothing without a world. Empty on success, else one sentence.
+  // Writes into this folder what the world looks like, how it moved and what moved it: scene.json,
+  // bodies.csv, joints.csv, commands.csv, contacts.csv if the scenario asks for it, and sensors.csv
+  // if the run is recorded; nothing without a world. Empty on success, else one sentence.
   [[nodiscard]] std::string OpenRecords(const std::string& folder);
   void FlushRecords();
   [[nodiscard]] std::string CloseRecords();
   // Values of the scenario's metrics are taken from now on; the book outlives this.
   void Measure(MetricBook& book);
-  // After OpenRecords: where bodies are, as often as the files are told, and what goes over
-  // channels that are not on DDS, as messages. The sink outlives this.
+  // Called after OpenRecords. Records as messages where bodies are, as often as the files are told,
+  // and what goes over channels that are not on DDS. The sink outlives this.
   void RecordInto(record::MessageSink& sink);
 
   bool present() const { return dynamics_ != nullptr; }
   VirtualTime progress() const { return progress_; }
-  // Threads on further processors have integrated islands.
+  // True if threads on further processors have integrated islands.
   bool HasHadHelp() const { return present() && dynamics_->work().helped > 0; }
-  // Nothing leaves the dynamics before this.
+  // Nothing leaves the dynamics before this time.
   VirtualTime NextOutput() const { return next_output_; }
-  // When somebody looks at the state next: a sample, an output, a line of the CSV.
+  // The time at which the state is read next: for a sample, an output, a line of the CSV.
   VirtualTime NextStop() const { return next_stop_; }
   // Advances to the earliest of `limit` and the next stop, and carries out what is due there. No
   // command for an earlier time comes any more. True if something was sent.
   bool Advance(VirtualTime limit);
-  // All programs have ended by then: what they have commanded acts, whoever sees it.
+  // All programs have ended by `end`: their last commands act, whoever sees it.
   void LetLastCommandsAct(VirtualTime end);
-  // Goes on to `to`, at most the next stop, while somebody acts at `now` whose commands are
-  // still to come. Each is applied at its time.
+  // Goes on to `to`, at most the next stop, while a thread acts at `now` whose commands are still
+  // to come. Each command is applied at its time.
   void Lead(VirtualTime now, VirtualTime to);
 
   // How many commands were sent and do not act yet; and the channels of sensors that have readings
@@ -89,20 +89,20 @@ class World {
   std::size_t kept_commands() const { return queue_.size(); }
   std::vector<std::pair<std::size_t, std::size_t>> KeptReadings() const;
 
-  // Where commands come in, by number: to be read from when they are readable.
+  // The descriptors at which commands come in, by number: to be read from when they are readable.
   std::vector<int> command_fds() const;
-  // The addresses of those to which programs send datagrams, and how many there are.
+  // Fills in the addresses of the inlets to which programs send datagrams, and their number.
   void NameReceivers(shm::OwnReceivers& receivers);
-  // Of each of them the command that comes in there, as the scenario numbers them.
+  // For each of these inlets, the command that comes in there, as the scenario numbers commands.
   std::vector<std::size_t> CommandsOfReceivers() const;
   std::size_t receivers() const { return inlet_of_receiver_.size(); }
-  // Takes what has arrived there at `now`, from the thread that is known to have sent it; others
-  // may still send for times before.
+  // Takes what has arrived at descriptor `index` at `now`, from the thread that is known to have
+  // sent it; other threads may still send for times before.
   void ReceiveCommands(std::size_t index, VirtualTime now, const CommandSender& from);
-  // Takes a datagram that was sent to that one of the receivers, as they were named, and did not
+  // Takes a datagram that was sent to that receiver, as NameReceivers numbers them, and did not
   // come in there.
   void ReceivePosted(std::size_t receiver, std::string_view datagram, const CommandSent& sent);
-  // Applies what has been sent by `now` to where no descriptor tells of it.
+  // Applies commands that have been sent by `now` to inlets where no descriptor tells of them.
   void ReceiveUntold(VirtualTime now);
   // Takes what has been written to terminals, at `now`.
   bool has_terminals() const { return !terminals_.empty(); }
@@ -111,12 +111,12 @@ class World {
   // The files that the robot's programs find under other names, as shm::kAliasesVariable has them.
   std::string AliasesOf(const std::string& robot) const;
 
-  // Of the coordinator's processor time, what physics and channels took.
+  // The part of the coordinator's processor time that physics and channels took.
   std::int64_t host_ns() const { return host_ns_; }
   std::int64_t commands() const { return commands_.taken(); }
   std::int64_t samples() const { return sensors_.samples(); }
   // At the run's end, a sentence each: channels of commands where nothing of use came in, sensors
-  // that nobody can have heard, and those that left readings out.
+  // that no program can have heard, and sensors that left readings out.
   std::vector<std::string> CommandComplaints() const;
   std::vector<std::string> UnheardSensors() const;
   std::vector<std::string> LossesOfSensors() const;
@@ -131,7 +131,7 @@ class World {
   // Commands for earlier times do not come any more.
   void Settle(VirtualTime time);
   void ReadDue();
-  // When a command acts that was sent at that time: not before what is settled.
+  // The time at which a command acts that was sent at `sent`: not before the time that is settled.
   VirtualTime ActsAt(VirtualTime sent, VirtualDuration latency) const;
   std::string WhomMoves(const CommandChannelSpec& spec) const;
 
@@ -139,8 +139,8 @@ class World {
   std::unique_ptr<Dynamics> dynamics_;
   VirtualTime progress_, next_output_, next_stop_;
   std::optional<ChannelRecords> channel_records_;  // outlives what it has wrapped
-  MeasurementLog measurements_;                    // this, too
-  ScenarioMetrics metrics_;                        // and this
+  MeasurementLog measurements_;                    // likewise
+  ScenarioMetrics metrics_;                        // likewise
   Channels channels_;
   std::vector<std::size_t> inlet_of_receiver_;
   std::vector<Inlet*> terminals_;

@@ -12,7 +12,8 @@ namespace tcs {
 
 namespace {
 
-// That would no longer be what they have said.
+// On /tf beside the world's transforms, the robots' transforms would no longer be what the robots
+// have said.
 bool RobotsHaveTransforms(const Scenario& scenario) {
   return std::ranges::any_of(scenario.sensors, [](const SensorChannelSpec& sensor) {
     const auto* to = std::get_if<DdsSensorEnd>(&sensor.to);

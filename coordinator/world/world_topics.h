@@ -1,6 +1,6 @@
 // Where the world's bodies and links are, in the run's recording: /bodies/NAME for each body
-// (Odometry), and for all bodies and links transforms from the frame "world": on /tf, or where
-// robots have that themselves on /world/tf.
+// (Odometry), and for all bodies and links transforms from the frame "world": on /tf, or, where
+// robots have /tf themselves, on /world/tf.
 #pragma once
 
 #include <span>

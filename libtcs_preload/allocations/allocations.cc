@@ -1,17 +1,17 @@
 // Preloaded behind the shim under fixed accounting only: each allocation is charged a set cost.
 //
-// A planner computes for seconds without a call that the shim sees; without this its time would
-// stand still. Allocating is what all such programs do, in numbers that repeat from run to run.
-// reallocarray needs no word: it calls realloc. The allocation itself is left to whoever provides
-// it: the C library, jemalloc, tcmalloc. free is theirs alone, so nothing may be handed out here
-// that they do not know.
+// A planner computes for seconds without a call that the shim sees; without this library its time
+// would stand still. Allocating is what all such programs do, in numbers that repeat from run to
+// run. reallocarray, which calls realloc, needs no word. The allocation itself is left to the
+// library that provides it: the C library, jemalloc, tcmalloc. free is that library's alone, so
+// nothing may be handed out here that it does not know.
 #include <malloc.h>
 #include <stddef.h>
 #include <stdlib.h>
 
 #include "libtcs_preload/allocations/next.h"
 
-// The shim's. Absent where this library was preloaded without it.
+// The shim's function. Absent where this library was preloaded without the shim.
 extern "C" void tcs_charge_allocation() noexcept __attribute__((weak));
 
 // The C library's own, for what dlsym may allocate while it looks for the next one.

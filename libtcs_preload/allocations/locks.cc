@@ -5,7 +5,7 @@
 
 #include "libtcs_preload/allocations/next.h"
 
-// The shim's. Absent where this library was preloaded without it.
+// The shim's function. Absent where this library was preloaded without the shim.
 extern "C" void tcs_charge_lock() noexcept __attribute__((weak));
 
 namespace {

@@ -8,7 +8,7 @@
  *
  *   for (int64_t next = tcs_now();; next += 1000000) {
  *     tcs_idle(next);
- *     tcs_read();      // what others have written before now is there, and nothing later
+ *     tcs_read();      // all that others have written before now is there, and nothing later
  *     const struct state seen = *shared;
  *     ...
  *     tcs_write();     // no program can read any more what was before now
@@ -39,12 +39,12 @@ int64_t tcs_now(void);
  * report. For loops that never wait; a thread that waits has activations without it. */
 void tcs_mark(void);
 
-/* Returns once all other threads have come to this thread's time. What they have written before
- * that time is then there. What they write later is not, if they call tcs_write. */
+/* Returns once all other threads have come to this thread's time. All that they have written before
+ * that time is then there. Later writes are not, if the writers call tcs_write. */
 void tcs_read(void);
 
-/* Returns once no other thread can still read at an earlier time by tcs_read. What the caller
- * writes then counts as written at its time. */
+/* Returns once no other thread can still read at an earlier time by tcs_read. The caller's writes
+ * then count as written at its time. */
 void tcs_write(void);
 
 /* Sleeps until tcs_now() is `until_ns`; at once if that time is over. Returns 0, or EINTR if a

@@ -5,7 +5,7 @@ using namespace tcs::preload;
 
 std::uint64_t tcs_counter_in_turn() {
   const Entered t;
-  // Nothing was led here before the process had its coordinator: a thread that has none is being
+  // No read was led here before the process had its coordinator: a thread that has none is being
   // made known to it.
   if (t == nullptr) return __rdtsc();
   return tcs::shm::CounterAt(NowNs(*t) + OffsetNs(Clock::kMonotonic),

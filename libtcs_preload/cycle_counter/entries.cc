@@ -5,8 +5,8 @@
 #include "libtcs_preload/cycle_counter/virtual_counter.h"
 #include "libtcs_preload/spinning/pauses.h"
 
-// Functions that use general registers only are asked first; most reads end there. Those that may
-// wait for a turn use the low halves of vectors, too, as code for every x86-64 does.
+// Functions that use general registers only are asked first; most reads end there. Functions that
+// may wait for a turn use the low halves of vectors, too, as code for every x86-64 does.
 //
 // Flags are kept by lahf and seto, which cost less than pushf and popf. `add` gets the overflow
 // flag back, sahf the others.
@@ -56,7 +56,7 @@ __asm__(
     ".hidden tcs_pause\n\t.globl tcs_pause\n\t"
     ".type tcs_pause, @function\n"
     "tcs_pause:\n\tendbr64\n\tpushq %rax\n\tpushq %rdx\n\t" TCS_SAVE
-    "movq 88(%rbp), %rdi\n\t"  // where it goes on
+    "movq 88(%rbp), %rdi\n\t"  // where the program goes on
     "call tcs_pause_at_once\n\ttestl %eax, %eax\n\tjnz 1f\n\t"
     "subq $256, %rsp\n\t" TCS_VECTORS(TCS_KEEP_VECTOR)
     "movq 88(%rbp), %rdi\n\t"

@@ -1,7 +1,7 @@
 // Where reads of the cycle counter are led to: the virtual counter.
 //
-// It goes on at one rate with CLOCK_MONOTONIC of the virtual time, so it shows the same in all
-// threads, and a read costs what a read of that clock costs.
+// The virtual counter goes on at one rate with CLOCK_MONOTONIC of the virtual time, so it shows the
+// same in all threads, and a read costs what a read of that clock costs.
 #pragma once
 
 // Called in the midst of other people's functions, in place of the instruction: all registers but

@@ -14,7 +14,8 @@ using shm::CodeRange;
 
 constexpr std::size_t kPage = 4096;
 
-// In memory of its own: the program's allocator may not be asked, and its stack may be small.
+// Memory for the plan, from the kernel: the program's allocator may not be asked, and its stack may
+// be small.
 class Room {
  public:
   Room() {
@@ -36,7 +37,7 @@ class Room {
   shm::PlanRoom* room_ = nullptr;
 };
 
-// A part of a segment can be written while this lives.
+// A part of a segment can be written while this object lives.
 class Writable {
  public:
   Writable(CodeRange part, const Elf64_Phdr& segment)
@@ -63,7 +64,7 @@ class Writable {
   const bool is_writable_;
 };
 
-// What is not replaced, after all.
+// Notes a read that is not replaced, after all.
 void Leave(const shm::Replacement& one, LeftReads* left) {
   if (!shm::IsPause(one.read, one.moved.end)) left->Add(one.read);
 }
@@ -77,7 +78,7 @@ void Replace(const shm::Replacements& found, const shm::Sought& sought, CodeRang
   if (!stand_ins.is_there()) return leave();
   const Writable writable(code, segment);
   if (!writable) return leave();
-  // Nobody executes the code before it is as a whole.
+  // No thread executes the code before it is complete.
   for (std::size_t i = 0; i < found.count(); ++i) {
     const Code stand_in = stand_ins.Add(found[i]);
     const bool leads = stand_in != nullptr &&

@@ -7,8 +7,9 @@
 
 namespace tcs::preload {
 
-// No thread executes code of the image meanwhile, but for this one, elsewhere. Its segments must
-// not change. What stands in for its reads. `left`: those of the counter that stay as they are.
+// Returns the stand-ins for the image's reads. No thread executes code of the image meanwhile, but
+// for the calling thread, elsewhere. The image's segments must not change. `left`: the reads of the
+// counter that stay as they are.
 StandInMemory* ReplaceReads(const shm::Image& image, const shm::Sought& sought, LeftReads* left);
 
 }  // namespace tcs::preload

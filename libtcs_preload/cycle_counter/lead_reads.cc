@@ -15,11 +15,11 @@ namespace {
 
 constexpr long kPage = 4096;
 
-// The images that have been looked through, by their places: one may be unloaded, and another one
-// come to its place. For the thread that has the loader's lock.
+// The images that have been looked through, by their places: an image may be unloaded, and another
+// image come to its place. For the thread that has the loader's lock.
 class Known {
  public:
-  // Calls `look(loaded)` with each that is new, which returns what stands in for its reads.
+  // Calls `look(loaded)` with each new image; `look` returns the stand-ins for the image's reads.
   template <class Look>
   void Update(const r_debug& loader, const Look& look) {
     ++round_;
@@ -34,7 +34,7 @@ class Known {
   }
 
  private:
-  // Those beyond are left as they are.
+  // Images beyond that number are left as they are.
   static constexpr std::size_t kMost = 2048;
   struct One {
     Elf64_Addr base;
@@ -47,7 +47,7 @@ class Known {
     }
   };
 
-  // The loader's list mostly has the same order. count_: it is not there.
+  // The loader's list mostly has the same order. Returns count_ if the image is not known.
   std::size_t Find(const link_map& loaded, std::size_t likely) const {
     if (likely < count_ && list_[likely].Is(loaded)) return likely;
     std::size_t i = 0;
@@ -89,12 +89,12 @@ void LookThrough(const r_debug& loader) {
 }
 
 // The loader calls a function that does nothing whenever its list has changed, so that debuggers
-// can stop there. It has its lock then, and no code of what is new has been executed.
+// can stop there. The loader has its lock then, and no code of a new image has been executed.
 void ListHasChanged() {
   if (g_loader->r_state == r_debug::RT_CONSISTENT) LookThrough(*g_loader);
 }
 
-// False where that function is another one than all known ones.
+// False where that function is none of those that are known.
 bool HearOfChanges(const r_debug& loader) {
   using shm::Code;
   const auto function = reinterpret_cast<Code>(loader.r_brk);

@@ -6,8 +6,8 @@
 
 namespace tcs::preload {
 
-// What is sought of all that is loaded, and of what will be. Once per program, before it has
-// threads; a child by fork inherits it. The thread is attached.
+// Leads what is sought in all images that are loaded, and that will be. Once per program, before it
+// has threads; a child by fork inherits it. The thread is attached.
 void LeadReads(const shm::Sought& sought);
 
 }  // namespace tcs::preload

@@ -1,5 +1,5 @@
-// Code that a program makes at run time. Where it reads the cycle counter nothing can be put into
-// its place, for nobody knows its functions: that is told.
+// Code that a program makes at run time. Where such code reads the cycle counter, the read cannot
+// be replaced, because the code's functions are not known: the coordinator is told of it.
 #include <sys/mman.h>
 #include <sys/uio.h>
 
@@ -15,9 +15,9 @@ using tcs::shm::CodeRange;
 
 namespace {
 
-// Piece by piece, as copies: not all of what is mapped is there to be read.
+// Code is looked through piece by piece, as copies: not all of the mapped memory can be read.
 constexpr std::size_t kPiece = 64 << 10, kOverlap = 64;
-// Whoever makes more of it executable at once reserves room for what is to come.
+// A program that makes more memory executable at once reserves room for code to come.
 constexpr std::size_t kMostSize = 16 << 20;
 
 void LookThrough(Code start, std::size_t size, std::uint8_t* copy, LeftReads* left) {

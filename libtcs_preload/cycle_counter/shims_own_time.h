@@ -7,7 +7,8 @@
 
 namespace tcs::preload {
 
-// What the thread computes while this lives is not charged, as far as it does so in one dispatch.
+// The thread is not charged for what it computes while this object lives, as far as it does so in
+// one dispatch.
 class ShimsOwnTime {
  public:
   ShimsOwnTime();

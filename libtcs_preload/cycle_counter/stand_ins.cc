@@ -36,7 +36,7 @@ std::uint8_t* Map(const std::uint8_t* where, std::size_t size, int how) {
   return at < 0 && at > -4096 ? nullptr : reinterpret_cast<std::uint8_t*>(at);
 }
 
-// What lies next to images is mostly taken, by others; so the steps become longer.
+// Memory next to images is mostly taken, by others; so the steps become longer.
 std::uint8_t* MapNear(CodeRange image, std::size_t size) {
   std::uint8_t* memory = Map(nullptr, size, 0);
   if (memory != nullptr && Reaches(memory, size, image)) return memory;
@@ -57,7 +57,7 @@ std::uint8_t* MapNear(CodeRange image, std::size_t size) {
   return nullptr;
 }
 
-// lea -128(%rsp), %rsp: what is below the stack pointer is the function's. lea changes no flag.
+// lea -128(%rsp), %rsp: the memory below the stack pointer is the function's. lea changes no flag.
 constexpr std::uint8_t kPassRedZone[] = {0x48, 0x8d, 0x64, 0x24, 0x80};
 constexpr std::uint8_t kBack[] = {0x48, 0x8d, 0xa4, 0x24, 0x80, 0, 0, 0};
 constexpr std::uint8_t kCallAtAddress[] = {0xff, 0x15};

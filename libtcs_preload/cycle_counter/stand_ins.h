@@ -1,30 +1,31 @@
-// The code that reads of the cycle counter, and pauses, are led to: for each of an image some
-// bytes, near enough to it for a jump, which call entries.h, or spinning/pauses.h, and go on behind
-// it.
+// The code that reads of the cycle counter, and pauses, are led to: for each of them in an image
+// some bytes, near enough to the image for a jump, which call entries.h, or spinning/pauses.h, and
+// go on behind the read or pause.
 #pragma once
 
 #include "shm/machine_code/stand_in.h"
 
 namespace tcs::preload {
 
-// Memory of stand-ins, which says itself how long it is and where the next one's of the same image
+// Memory of stand-ins. It says itself how long it is and where the next memory of the same image
 // is.
 struct StandInMemory;
 
-// Of an image that has been unloaded: no thread may be in its code any more.
+// Frees the stand-ins of an image that has been unloaded: no thread may be in its code any more.
 void Free(StandInMemory* first);
 
-// Where code for so many reads of the image has room. Written once, by the thread that has made it,
-// and executed from Finish on. Stays until Free.
+// Memory with room for the code of so many reads of the image. Written once, by the thread that has
+// made it, and executed from Finish on. Stays until Free.
 class StandIns {
  public:
   // False from is_there() where the kernel gives no memory that is near enough.
   StandIns(shm::CodeRange image, std::size_t reads, const shm::Sought& sought);
 
   bool is_there() const { return memory_ != nullptr; }
-  // The code for this read; null: its instructions cannot be moved as far.
+  // The code for this read; null: the read's instructions cannot be moved as far.
   shm::Code Add(const shm::Replacement& replacement);
-  // False if the kernel lets nothing of it be executed. The memory is the first of the list then.
+  // False if the kernel lets none of the code be executed. The memory is the first of the list
+  // then.
   bool Finish(StandInMemory** list);
 
  private:

@@ -11,7 +11,7 @@ namespace tcs::preload {
 using shm::WhereReads;
 
 struct LeftReads {
-  std::size_t count = 0;  // that could not be replaced
+  std::size_t count = 0;  // reads that could not be replaced
   shm::Code first = nullptr;
 
   void Add(shm::Code read) {
@@ -19,7 +19,8 @@ struct LeftReads {
   }
 };
 
-// Once for a program; nothing where there are none. The thread may wait for its turn meanwhile.
+// Tells once for a program; tells nothing where no reads are left. The thread may wait for its turn
+// meanwhile.
 void TellOfReads(const LeftReads& left, WhereReads where);
 bool HasToldOfReads();
 

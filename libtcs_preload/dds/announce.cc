@@ -7,7 +7,7 @@
 namespace tcs::dds {
 namespace {
 
-// What a lease is to the coordinator: the time that automatic liveliness lasts when nobody renews
+// Sets the lease for the coordinator: the time that automatic liveliness lasts when nobody renews
 // it. Manual liveliness runs out in each reader's process by itself.
 void SetLease(shm::DdsMessage& message, std::int64_t lease_ns) {
   if (lease_ns == DDS_INFINITY) return;
@@ -15,7 +15,7 @@ void SetLease(shm::DdsMessage& message, std::int64_t lease_ns) {
   message.flags |= shm::kDdsLeased;
 }
 
-// One that is of this process only is nobody else's concern (ignored_partitions.h).
+// An endpoint that is of this process only is nobody else's concern (ignored_partitions.h).
 template <class Entity>
 void SendEndpoint(const Entity& entity, std::uint32_t kind) {
   if (entity.e.onlylocal) return;
@@ -29,7 +29,8 @@ void SendEndpoint(const Entity& entity, std::uint32_t kind) {
   Send(*entity.e.gv, message, EncodeEndpoint(kind, qos.topic_name, entity.type, &qos));
 }
 
-// Readers of other processes that expect what the writer has: it has sent all, or has nothing.
+// Tells readers of other processes that expect what the writer has: the writer has sent all, or has
+// nothing.
 void EndHistories(const ddsi_writer& writer) {
   if (writer.e.onlylocal || writer.xqos->durability.kind < DDS_DURABILITY_TRANSIENT_LOCAL) return;
   const ddsi_domaingv& gv = *writer.e.gv;
@@ -76,7 +77,7 @@ void AnnounceChange(const ddsi_writer& writer) { SendEndpoint(writer, shm::kDdsW
 
 void AnnounceChange(const ddsi_reader& reader) { SendEndpoint(reader, shm::kDdsReader); }
 
-// Its type is as it was, which the topic itself does not have.
+// The topic's type is as it was; the topic itself does not have it.
 void AnnounceChange(const ddsi_topic& topic) {
   if (!MakesTopicsKnown(*topic.e.gv)) return;
   const dds_qos_t& qos = *topic.definition->xqos;

@@ -14,7 +14,7 @@ namespace {
 thread_local int t_making_readers;
 thread_local Forwarding* t_forwarding;
 
-// Found from a covered cache by its operations, which are its own copy.
+// A cover is found from a covered cache by the cache's operations, which are the cover's own copy.
 struct Cover {
   dds_rhc_ops operations;  // first
   const dds_rhc_ops* real;
@@ -101,7 +101,7 @@ bool StoreAddressed(const ddsi_reader& reader, const ddsi_writer& shadow, ddsi_s
   ddsi_writer_info info;
   ddsi_make_writer_info(&info, &shadow.e, shadow.xqos, sample->statusinfo);
   ddsi_serdata* as_its_own = ddsi_serdata_ref_as_type(reader.type, sample);
-  if (as_its_own == nullptr) return true;  // not of its type
+  if (as_its_own == nullptr) return true;  // not of the reader's type
   ddsi_tkmap* map = shadow.e.gv->m_tkmap;
   ddsi_tkmap_instance* instance = ddsi_tkmap_lookup_instance_ref(map, as_its_own);
   bool stored = true;

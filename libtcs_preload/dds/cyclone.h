@@ -1,7 +1,7 @@
 // Cyclone DDS as libtcs_dds.so calls it.
 //
 // Functions that the shim stands before are called through Real(): their plain names would lead
-// back to the hooks. All others are called as they are.
+// back to the hooks. All other functions are called as they are.
 #pragma once
 
 #include <dds/dds.h>
@@ -28,11 +28,12 @@ typedef struct TcsSockWaitset* os_sockWaitset;
 #include "libtcs_preload/dds/calls.h"
 #include "libtcs_preload/dds/link.h"
 
-// In no header of libddsc's.
+// Functions that are in no header of libddsc's.
 extern "C" {
 // Makes sure that an entity stays while it is looked at.
 dds_return_t dds_entity_pin(dds_entity_t handle, struct dds_entity** entity);
-// What all ways to make a topic come to. With the type that the topic has then, in its place.
+// The function that all ways to make a topic come to. Replaces `*type` by the type that the topic
+// has then.
 dds_entity_t dds_create_topic_impl(dds_entity_t participant, const char* name, bool allow_dcps,
                                    ddsi_sertype** type, const dds_qos_t* qos,
                                    const dds_listener_t* listener, const ddsi_plist* discovery,
@@ -56,11 +57,11 @@ const RealCalls& Real();
 // inner structures this library was compiled with.
 bool FindCyclone(const Link& link);
 
-// The same for what can be seen only once there is a participant: whether its structures lie where
-// the headers say.
+// As FindCyclone, for what can be seen only once there is a participant: whether its structures lie
+// where the headers say.
 bool LayoutIsAsCompiled(const ddsi_domaingv& gv, const ddsi_participant& participant);
 
-// While it lives, what the index of entities leads to stays.
+// While this object lives, all that the index of entities leads to stays.
 class Awake {
  public:
   explicit Awake(const ddsi_domaingv* gv) : thread_(lookup_thread_state()) {

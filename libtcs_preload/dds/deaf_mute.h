@@ -9,8 +9,8 @@
 
 namespace tcs::dds {
 
-// Who has lost sight of another, its lease being over, finds it again that much later at the
-// earliest: Cyclone needs some of it to collect what it knew under the same GUID.
+// A process that has lost sight of another, whose lease is over, finds it again that much later at
+// the earliest: Cyclone needs some of that time to collect what it knew under the same GUID.
 constexpr dds_duration_t kRediscovery = DDS_MSECS(100);
 
 // Hook of ddsi_set_deafmute.

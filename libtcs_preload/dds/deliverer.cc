@@ -23,8 +23,8 @@ struct Deliveries {
   std::mutex mutex;
   std::condition_variable done;
   std::vector<std::uint32_t> closing;
-  bool ended = false;  // the run is over: who wants something has to do it
-  Mirrors mirrors;     // the deliverer's, and after its end whoever has the mutex
+  bool ended = false;  // the run is over: a thread that wants something has to do it
+  Mirrors mirrors;     // the deliverer's; after its end, of the thread that has the mutex
 };
 
 Deliveries& TheDeliveries() {
@@ -106,7 +106,8 @@ void StartDeliverer() {
 bool IsDeliverer() { return t_is_deliverer; }
 
 void LookAgain() {
-  // On the deliverer a listener has made it: it looks when the listener is done.
+  // On the deliverer a listener has made what is new: the deliverer looks when the listener is
+  // done.
   SendNudge();
 }
 

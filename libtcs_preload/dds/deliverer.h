@@ -8,15 +8,16 @@ namespace tcs::dds {
 
 void StartDeliverer();
 
-// The calling thread is it.
+// True if the calling thread is the deliverer.
 bool IsDeliverer();
 
-// The program has a new topic or participant: there may be more to mirror. Has happened when the
-// calling thread goes on or next looks at what has come.
+// The program has a new topic or participant: there may be more to mirror. The look has happened
+// when the calling thread goes on or next looks at what has come.
 void LookAgain();
 
-// The program's last participant in a domain is gone, whose end has begun (program.h): so are the
-// shadows when this returns, or, on the deliverer, soon. Its end is over then.
+// The program's last participant in a domain is gone, and the domain's end has begun (program.h):
+// the shadows are gone, too, when this returns, or, on the deliverer, soon. The domain's end is
+// over then.
 void CloseDomain(std::uint32_t domain);
 
 }  // namespace tcs::dds

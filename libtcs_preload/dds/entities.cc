@@ -18,8 +18,8 @@ bool IsBuiltin(const ddsi_participant& participant, const ddsi_sertype* type) {
   return builtintopic_is_builtintopic(participant.e.gv->builtin_topic_interface, type);
 }
 
-// What a shadow is made with: others' endpoints show of which type they are, a program's own do
-// not.
+// The QoS that a shadow is made with: others' endpoints show of which type they are, a program's
+// own do not.
 class WithTypeInformation {
  public:
   WithTypeInformation(const dds_qos_t* qos, const ddsi_sertype* type) : qos_(ddsi_xqos_dup(qos)) {
@@ -36,7 +36,8 @@ class WithTypeInformation {
   dds_qos_t* qos_;
 };
 
-// Of an endpoint of the program's that is about to be made; `others`: those that it may match.
+// The matches of an endpoint of the program's that is about to be made; `others`: the endpoints
+// that it may match.
 OwnMatches MatchesOf(ddsi_domaingv* gv, const char* topic, const dds_qos_t& qos,
                      const std::vector<Guid>& others) {
   const bool is_ignored = IsIgnored(gv->config, topic, qos);
@@ -164,7 +165,8 @@ void UpdateReader(ddsi_reader* reader, const dds_qos_t* qos) {
   if (!IsShadow(reader->e.gv, reader->e.guid)) AnnounceChange(*reader);
 }
 
-// A shadow's topic is there only for its endpoints: it must not be found as one that somebody has.
+// A shadow's topic is there only for its endpoints: the topic must not be found as one that
+// somebody has.
 dds_return_t NewTopic(ddsi_topic** topic, ddsi_guid_t* guid, ddsi_participant* participant,
                       const char* name, const ddsi_sertype* type, const dds_qos_t* qos,
                       bool is_builtin, bool* is_new) {

@@ -1,5 +1,5 @@
 // The shim's doors into Cyclone DDS: each name of calls.h jumps to wherever its slot says, so that
-// nothing here knows what its arguments are.
+// nothing here knows the arguments of a call.
 //
 // A slot first leads to tcs_dds_resolve, which decides: where DDS is to use sockets, or endpoints
 // cannot be had, to libddsc; else to the hooks of libtcs_dds.so, which is loaded when the program
@@ -64,8 +64,8 @@ __asm__(
 TCS_DDS_CALLS(TCS_DDS_DOOR)
 
 // A program that looks a function up in libddsc itself, as Python's ctypes does, is led to the door
-// as well. Where that is not so, the C library's own dlsym goes on in this one's place: RTLD_NEXT
-// depends on who has called.
+// as well. Where that is not so, the C library's own dlsym goes on in this function's place:
+// RTLD_NEXT depends on who has called.
 extern "C" {
 __attribute__((visibility("hidden"))) void* (*tcs_dds_real_dlsym)(void* library, const char* name);
 __attribute__((visibility("hidden"), used)) void* tcs_dds_looked_up(void* library,
@@ -94,7 +94,7 @@ constexpr char kLibrary[] = "libddsc.so.0debian";
 #define TCS_DDS_COUNT(name) +1
 constexpr unsigned kStartingCalls = 0 TCS_DDS_STARTING_CALLS(TCS_DDS_COUNT);
 
-// Null: not started yet. The hooks of libtcs_dds.so, or kNoHooks for mechanism S.
+// Null: not started yet. The hooks of libtcs_dds.so, or kNoHooks where DDS uses sockets.
 constexpr dds::Hook kNoHooks[] = {{nullptr, nullptr}};
 const dds::Hook* g_hooks;
 pthread_once_t g_start = PTHREAD_ONCE_INIT;
@@ -136,8 +136,8 @@ void* LookUp(void* library, const char* name) {
 
 namespace {
 
-// Under the package's name, whichever of its links has led to it; copies that others bring are not
-// meant.
+// True for a function of a library under the package's name, whichever of its links has led to it;
+// copies that others bring are not meant.
 bool IsInDebians(void* function) {
   Dl_info info{};
   if (function == nullptr || dladdr(function, &info) == 0) return false;
@@ -157,7 +157,7 @@ void* Real(unsigned call) {
 }
 
 const dds::Hook* Load(const char* path) {
-  // libtcs_dds.so depends on this library: it must not bring in a second one.
+  // libtcs_dds.so depends on this library, and must not bring in a second one.
   void* library = dlopen(kLibrary, RTLD_LAZY | RTLD_NOLOAD);
   if (library == nullptr) {
     Say("tcs: this program's Cyclone DDS is not Debian's libddsc.so.0debian, so its DDS uses "
@@ -188,7 +188,7 @@ void Start() {
 }
 
 // A domain begins, and none of the starting calls came by: the program has looked them up in the
-// library itself, as Python's ctypes does. Then others do not come by either.
+// library itself, as Python's ctypes does. Then other calls do not come by either.
 void StartPastUs() {
   char buffer[kDdsPathSize];
   if (DdsLibrary(buffer) != nullptr) {
@@ -226,7 +226,7 @@ void* tcs_dds_resolve(unsigned call) {
   if (call < kStartingCalls) pthread_once(&g_start, Start);
   if (call == tcs::dds::kCall_rtps_config_prep) pthread_once(&g_start, StartPastUs);
   const tcs::dds::Hook* hooks = __atomic_load_n(&g_hooks, __ATOMIC_ACQUIRE);
-  // Before the start: libddsc's own, for this once.
+  // Before the start: libddsc's own function, for this once.
   if (hooks == nullptr) return Real(call);
   void* function = HookOf(hooks, kNames[call]);
   if (function == nullptr) function = Real(call);

@@ -1,7 +1,7 @@
 // Messages that a deaf domain misses, or that a mute one does not get rid of (deaf_mute.h), in
-// their order: what a network would carry once more when it carries something again. Best-effort
-// samples and assertions of liveliness are lost; of a writer that keeps the last few samples of an
-// instance, so are those before.
+// their order: messages that a network would carry once more when it carries something again.
+// Best-effort samples and assertions of liveliness are lost; of a writer that keeps the last few
+// samples of an instance, the samples before are lost, too.
 //
 // Not thread-safe.
 #pragma once

@@ -63,9 +63,9 @@ std::uint64_t GenerateInstance() {
   return Real().ddsi_iid_gen();
 }
 
-// Each process has its own, and the same ones in each run: instances then come in the same order.
-// Another one each time that the program begins anew with its first domain: GUIDs must not come
-// back while others may still know them.
+// Each process has its own seeds, and the same ones in each run: instances then come in the same
+// order. The seed is another one each time that the program begins anew with its first domain:
+// GUIDs must not come back while others may still know them.
 bool MakeSeed(ddsrt_prng_seed* seed) {
   static std::atomic<std::uint32_t> made;
   std::uint32_t value = OwnProcess() << 16 ^ made++;

@@ -1,5 +1,5 @@
-// Shadows look like what they stand for: they have its GUID. ddsperf, for one, names partitions
-// after participants' GUIDs, and the built-in topics show them.
+// Shadows look like their originals: a shadow has its original's GUID. ddsperf, for one, names
+// partitions after participants' GUIDs, and the built-in topics show them.
 //
 // Cyclone makes a participant's GUID from a base and a counter, an endpoint's from a cursor.
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace tcs::dds {
 
-// While it lives, the participant that the calling thread makes gets this GUID.
+// While this object lives, the participant that the calling thread makes gets this GUID.
 class MakingShadow {
  public:
   explicit MakingShadow(const Guid& participant);
@@ -17,10 +17,10 @@ class MakingShadow {
   MakingShadow& operator=(const MakingShadow&) = delete;
 };
 
-// The next entity of a shadow participant gets this one's last four bytes if it is of the same
+// The next entity of a shadow participant gets the last four bytes of `entity` if it is of the same
 // kind.
 void SetNextEntity(ddsi_domaingv* gv, const Guid& participant, const Guid& entity);
-// Or, for topics, which have no counterpart elsewhere, some that no endpoint has.
+// For topics, which have no counterpart elsewhere: the next entity gets bytes that no endpoint has.
 void SetNextEntityOutOfTheWay(ddsi_domaingv* gv, const Guid& participant);
 
 // Calls the real ddsi_new_participant.

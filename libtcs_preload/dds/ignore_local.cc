@@ -6,7 +6,7 @@
 namespace tcs::dds {
 namespace {
 
-// Listeners run while it is held, which may wait for a thread that wants it: not for ever.
+// Listeners run while a turn is held, and may wait for a thread that wants the turn: not for ever.
 constexpr std::chrono::milliseconds kLongestTurn{100};
 
 // An endpoint of the program's that has another policy while a shadow is made.
@@ -33,15 +33,15 @@ dds_ignorelocal_kind_t Policy(const dds_qos_t* qos) {
   return kind;
 }
 
-// Of making an endpoint. Two that are made at a time may find each other twice: Cyclone then counts
-// two that do not suit it where there is one.
+// The turn to make an endpoint. Two endpoints that are made at a time may find each other twice:
+// Cyclone then counts two that do not suit an endpoint where there is one.
 std::unique_lock<std::recursive_timed_mutex> Turn() {
   std::unique_lock turn(TheIgnored().turn, std::defer_lock);
   static_cast<void>(turn.try_lock_for(kLongestTurn));
   return turn;
 }
 
-// Returns the policy that a reader or writer had; the same if it is gone.
+// Returns the policy that a reader or writer had; `kind` if the entity is gone.
 dds_ignorelocal_kind_t ExchangePolicy(const ddsi_domaingv* gv, const Guid& guid,
                                       dds_ignorelocal_kind_t kind) {
   const auto exchange = [kind](auto& entity) {
@@ -86,7 +86,7 @@ OwnMatches::OwnMatches(ddsi_domaingv* gv, const dds_qos_t* qos, const std::vecto
                        const std::vector<Guid>& shadows, bool no_shadows)
     : turn_(Turn()), gv_(gv), given_(qos), no_shadows_(no_shadows) {
   const bool no_others = Policy(qos) == DDS_IGNORELOCAL_PROCESS;
-  if (no_others == no_shadows) return;  // it ignores all, as it is, or none
+  if (no_others == no_shadows) return;  // the endpoint ignores all, as it is, or none
   if (no_others) {
     milder_ = ddsi_xqos_dup(qos);
     dds_qset_ignorelocal(milder_, DDS_IGNORELOCAL_PARTICIPANT);

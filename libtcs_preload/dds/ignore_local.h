@@ -3,10 +3,10 @@
 // (ignored_partitions.h), and no shadow.
 //
 // Cyclone compares the two endpoints' policies whenever one of them is made. So the program's
-// endpoints with that policy have a milder one while a shadow is made; and while one of them is
-// made itself, it is the program's others that ignore it. Those that are to match no shadow have
-// that policy only then, and all shadows of their topic have it while one of them is made.
-// Endpoints and shadows are made one after another.
+// endpoints with that policy have a milder one while a shadow is made; and while such an endpoint
+// is made itself, the program's other endpoints ignore it. Endpoints that are to match no shadow
+// have that policy only while a shadow is made, and all shadows of their topic have it while such
+// an endpoint is made. Endpoints and shadows are made one after another.
 #pragma once
 
 #include <mutex>
@@ -17,7 +17,7 @@
 
 namespace tcs::dds {
 
-// While it lives, the calling thread makes a shadow.
+// While this object lives, the calling thread makes a shadow.
 class ShadowMatches {
  public:
   explicit ShadowMatches(ddsi_domaingv* gv);
@@ -30,9 +30,9 @@ class ShadowMatches {
   ddsi_domaingv* gv_;
 };
 
-// While it lives, the calling thread makes an endpoint of the program's, with qos(). `others`: the
-// endpoints of the program that it may match, `shadows`: those of others. `no_shadows`: it is to
-// match none of the latter.
+// While this object lives, the calling thread makes an endpoint of the program's, with qos().
+// `others`: the endpoints of the program that the endpoint may match, `shadows`: the endpoints of
+// others. `no_shadows`: the endpoint is to match no shadow.
 class OwnMatches {
  public:
   OwnMatches(ddsi_domaingv* gv, const dds_qos_t* qos, const std::vector<Guid>& others,
@@ -42,7 +42,7 @@ class OwnMatches {
   OwnMatches& operator=(const OwnMatches&) = delete;
 
   const dds_qos_t* qos() const { return milder_ != nullptr ? milder_ : given_; }
-  // It has been made.
+  // The endpoint has been made.
   void Made(const ddsi_guid_t& guid);
 
  private:
@@ -50,8 +50,8 @@ class OwnMatches {
   ddsi_domaingv* gv_;
   const dds_qos_t* given_;
   bool no_shadows_;
-  dds_qos_t* milder_ = nullptr;  // null: it has another policy
-  // Those that ignore it meanwhile, and their own policies.
+  dds_qos_t* milder_ = nullptr;  // null: the endpoint has another policy
+  // The endpoints that ignore it meanwhile, and their own policies.
   std::vector<std::pair<Guid, dds_ignorelocal_kind_t>> ignoring_it_;
 };
 

@@ -9,7 +9,8 @@ bool IsEmptyOrAll(const char* pattern) {
   return pattern[0] == '\0' || (pattern[0] == '*' && pattern[1] == '\0');
 }
 
-// Whether a text may suit both, as Cyclone sees it: its own function for that is not exported.
+// Whether a text may suit both patterns, as Cyclone sees it: Cyclone's own function for that is not
+// exported.
 bool Overlap(const char* a, const char* b) {
   if (IsEmptyOrAll(a) && IsEmptyOrAll(b)) return true;
   if (*a == '\0' || *b == '\0') return false;

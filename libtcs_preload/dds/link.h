@@ -1,5 +1,5 @@
-// What the shim does for the part that knows Cyclone DDS (libtcs_dds.so), which it loads when a
-// program creates its first participant. That part has nothing else of the shim's.
+// The functions of the shim for the part that knows Cyclone DDS (libtcs_dds.so), which the shim
+// loads when a program creates its first participant. The part has nothing else of the shim's.
 #pragma once
 
 #include <sys/uio.h>
@@ -12,17 +12,18 @@
 namespace tcs::dds {
 
 struct Link {
-  // The process's number (shm/dds_exchange.h), after it has been given its area. Once per process;
-  // 0: not under tcs, or there is no room for it.
+  // The process's number (shm/dds_exchange.h), after the process has been given its area. Once per
+  // process; 0: not under tcs, or there is no room for the process.
   std::uint32_t (*join)();
 
-  // One whole message, its DdsMessage header first. It has been sent, at the calling thread's
-  // virtual time, when this returns; more urgent threads that it wakes have run by then. No two
-  // threads may send at the same time. False: it is larger than the outbox, and was not sent.
+  // Sends one whole message, its DdsMessage header first. The message has been sent, at the calling
+  // thread's virtual time, when this returns; more urgent threads that the message wakes have run
+  // by then. No two threads may send at the same time. False: the message is larger than the
+  // outbox, and was not sent.
   bool (*send)(const iovec* parts, int count);
 
   // Whether any process is full (shm/dds_exchange.h), which costs next to nothing to ask, and
-  // whether that one is.
+  // whether that process is.
   bool (*any_is_full)();
   bool (*is_full)(std::uint32_t process);
   // Waits until that process is not full, or has left, or it is `until_ns`. Not for the deliverer.
@@ -30,8 +31,8 @@ struct Link {
   bool (*await_room)(std::uint32_t process, std::int64_t until_ns);
 
   // For the deliverer, a thread that makes itself known by calling this first: waits until messages
-  // are due. They stand one after another at `*messages`, until the next call. Returns their bytes
-  // together; 0: the run is over, and the thread has to end.
+  // are due. The messages stand one after another at `*messages`, until the next call. Returns
+  // their bytes together; 0: the run is over, and the thread has to end.
   std::size_t (*wait)(const std::byte** messages);
 
   // Before the calling thread looks at what has come: returns once all that was sent before its
@@ -39,7 +40,7 @@ struct Link {
   // or its listeners need.
   void (*sync)();
 
-  // The same for messages that are due by now: does not wait for messages that others may still
+  // As sync, for messages that are due by now: does not wait for messages that others may still
   // send for an earlier time.
   void (*settle)();
 
@@ -56,16 +57,16 @@ struct Link {
   void* (*look_up)(void* library, const char* name);
 };
 
-// One function of libddsc (calls.h) that libtcs_dds.so does otherwise. A table of them ends with
+// A function of libddsc (calls.h) that libtcs_dds.so does otherwise. A table of hooks ends with
 // nulls.
 struct Hook {
   const char* name;
   void* function;
 };
 
-// What libtcs_dds.so exports: called once per process, before anything else of it. Null and one
-// line on stderr if it cannot work here (another version of Cyclone): the program then uses
-// sockets. Null and no line outside tcs.
+// The function that libtcs_dds.so exports: called once per process, before anything else of the
+// library. Null and one line on stderr if the library cannot work here (another version of
+// Cyclone): the program then uses sockets. Null and no line outside tcs.
 inline constexpr char kStartSymbol[] = "tcs_dds_start";
 using Start = const Hook* (*)(const Link& link);
 

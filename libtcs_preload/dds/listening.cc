@@ -7,7 +7,7 @@ namespace {
 
 thread_local int t_listening;
 
-// Cyclone has one of each.
+// Cyclone has one status callback of each kind.
 std::atomic<ddsi_status_cb_t> g_reader_status;
 std::atomic<ddsi_status_cb_t> g_writer_status;
 

@@ -8,8 +8,8 @@
 namespace tcs::dds {
 namespace {
 
-// Notes in the reader's match whether the writer is alive; false: it does not match, or that was
-// so already.
+// Notes in the reader's match whether the writer is alive; false: the writer does not match, or
+// that was so already.
 bool MarkAlive(ddsi_reader& reader, const ddsi_writer& writer, bool is_alive) {
   ddsrt_mutex_lock(&reader.e.lock);
   auto* match = static_cast<ddsi_rd_wr_match*>(

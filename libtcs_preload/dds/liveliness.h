@@ -1,7 +1,7 @@
 // Liveliness. A shadow with manual liveliness runs out by itself, by Cyclone's own lease, which
-// each sample and each assertion of the original renews. One with automatic liveliness never does
-// in this process: the coordinator says when its process has been
-// dead or stopped for long enough.
+// each sample and each assertion of the original renews. A shadow with automatic liveliness never
+// runs out in this process: the coordinator says when its original's process has been dead or
+// stopped for long enough.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,8 @@ namespace tcs::dds {
 // had run out.
 void LoseLiveliness(ddsi_domaingv* gv, const ddsi_guid_t& shadow, const std::vector<Guid>& readers);
 
-// It has written again. Its readers see it alive, as if it were in another process.
+// The shadow's original has written again. The readers see the shadow alive, as if it were in
+// another process.
 void RegainLiveliness(ddsi_domaingv* gv, const ddsi_guid_t& shadow,
                       const std::vector<Guid>& readers);
 

@@ -148,7 +148,7 @@ void Mirrors::HandleTopic(const shm::DdsMessage& message, Payload payload) {
   MakeTopic(guid, topic);
 }
 
-// With the program's last participant Cyclone ends them itself.
+// With the program's last participant Cyclone ends the topics of shadows itself.
 void Mirrors::EndTopicIn(std::uint32_t domain, Topic& topic) {
   const auto found = topic.shadows.find(domain);
   if (found == topic.shadows.end()) return;
@@ -165,7 +165,7 @@ void Mirrors::EndTopic(Topic& topic) {
 }
 
 // Some policies are the publisher's, the subscriber's or the topic's, which would refuse the
-// endpoint's others.
+// endpoint's other policies.
 void Mirrors::ChangeQos(Endpoint& endpoint, Payload payload) {
   endpoint.payload = std::move(payload);
   for (const auto& [domain, shadow] : endpoint.shadows) {
@@ -248,7 +248,7 @@ void Mirrors::MakeAll() {
 
 void Mirrors::Close(std::uint32_t domain) {
   // The program may have made another participant meanwhile: in the same domain, or, if that has
-  // been taken down with all shadows, in a new one of its number.
+  // been taken down with all shadows, in a new domain of its number.
   const bool goes_on = HasDomain(domain);
   for (auto& [guid, participant] : participants_) {
     const auto found = participant.shadows.find(domain);
@@ -285,7 +285,8 @@ void Mirrors::LookAtDeaf(const ddsi_domaingv& gv) {
   Hear(domain);
 }
 
-// What has not been heard of for as long as its lease is gone, as far as a deaf domain can tell.
+// A participant that has not been heard of for as long as its lease is gone, as far as a deaf
+// domain can tell.
 void Mirrors::EndLeases(const ddsi_domaingv& gv, Deaf& deaf) {
   const std::int64_t now_ns = TheLink().now();
   for (auto place = participants_.begin(); place != participants_.end();) {
@@ -305,7 +306,7 @@ void Mirrors::EndLeases(const ddsi_domaingv& gv, Deaf& deaf) {
   }
 }
 
-// Catches up with what others have told it, and what reliable writers have written.
+// Catches up with what others have told the domain, and what reliable writers have written.
 void Mirrors::Hear(std::uint32_t domain) {
   const Deaf was = std::move(deaf_.extract(domain).mapped());
   std::vector<Guid> gone_participants, gone_endpoints;
@@ -337,7 +338,7 @@ void Mirrors::Hear(std::uint32_t domain) {
   }
 }
 
-// By deaf domains that have, or had, a shadow of the endpoint.
+// The message is missed by deaf domains that have, or had, a shadow of the endpoint.
 void Mirrors::Miss(const Guid& guid, const Endpoint& endpoint, const shm::DdsMessage& message,
                    const std::byte* payload) {
   for (auto& [domain, deaf] : deaf_) {
@@ -438,14 +439,14 @@ void Mirrors::MakeTopicIn(ddsi_domaingv* gv, const Guid& guid, Topic& topic) {
   }
   ddsi_sertype_unref(type);
   if (!is_new) return;
-  // Who looks for a topic waits for this.
+  // A thread that looks for a topic waits for this.
   ddsrt_mutex_lock(&gv->new_topic_lock);
   ++gv->new_topic_version;
   ddsrt_cond_broadcast(&gv->new_topic_cond);
   ddsrt_mutex_unlock(&gv->new_topic_lock);
 }
 
-// The program's own if it is the same; null: the program does not look at the topic.
+// The program's own type if it is the same; null: the program does not look at the topic.
 ddsi_sertype* Mirrors::TypeOf(const ddsi_domaingv* gv, const DecodedEndpoint& what) {
   const std::uint32_t domain = gv->config.domainId;
   if (ddsi_sertype* own = ReferType(domain, what.topic, what.type)) {
@@ -456,7 +457,7 @@ ddsi_sertype* Mirrors::TypeOf(const ddsi_domaingv* gv, const DecodedEndpoint& wh
   return NewOtherType(what.type, what.keyless, what.type_code);
 }
 
-// 0: the program does not look at it.
+// 0: the program does not look at the topic.
 dds_entity_t Mirrors::TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint,
                               ParticipantShadow& participant, const dds_qos_t* qos) {
   const DecodedEndpoint& what = endpoint.what;
@@ -596,7 +597,7 @@ void Mirrors::LookAt(const ddsi_domaingv* gv, Endpoint& endpoint, const ddsi_ser
 }
 
 // Samples of others' types are all one instance, which Cyclone would otherwise make and collect for
-// each of them. It goes with the domain.
+// each of them. The instance goes with the domain.
 void Mirrors::HoldInstance(ddsi_domaingv* gv, ddsi_serdata* sample) {
   if (!held_in_.insert(gv->config.domainId).second) return;
   const Awake awake(gv);

@@ -5,9 +5,10 @@
 // own shadows, also of what the program itself has in the others.
 //
 // A shadow participant is there while the program has a participant in the domain; a shadow
-// endpoint once the program has its topic, or looks at all that there is. It has the program's type
-// if that is its own, too, and else one that stands for it (other_type.h). Shadow writers write
-// what their originals have written; shadow readers are taps (tap.h).
+// endpoint once the program has its topic, or looks at all that there is. The shadow endpoint has
+// the program's type if that is its original's type, too, and else one that stands for the
+// original's type (other_type.h). Shadow writers write what their originals have written; shadow
+// readers are taps (tap.h).
 //
 // For one thread, the deliverer.
 #pragma once
@@ -30,7 +31,7 @@ namespace tcs::dds {
 
 class Mirrors {
  public:
-  // One message of another process.
+  // Handles one message of another process.
   void Handle(const shm::DdsMessage& message, const std::byte* payload);
 
   // Makes the shadows that have become possible.
@@ -73,9 +74,9 @@ class Mirrors {
     std::map<std::uint32_t, EndpointShadow> shadows;
     std::map<std::uint32_t, std::int64_t> lost_at_ns;  // by deaf domains, monotonic
     bool gone = false;                                 // only deaf domains still have shadows of it
-    bool not_alive = false;  // its lease is over, and it has not written since
+    bool not_alive = false;  // the lease is over, and the endpoint has not written since
     bool warned = false;
-    bool looked_at = false;  // one of its samples, whether the program's type of that name reads it
+    bool looked_at = false;  // a sample was tried: whether the program's type of that name reads it
   };
   // A topic that is announced by itself; it has no handle in the program.
   struct Topic {
@@ -85,8 +86,8 @@ class Mirrors {
     DecodedEndpoint what;
     std::map<std::uint32_t, ddsi_guid_t> shadows;
   };
-  // A domain that hears nothing (deaf_mute.h): its shadows are as they were, until the leases of
-  // what they stand for are over.
+  // A domain that hears nothing (deaf_mute.h): the domain's shadows are as they were, until the
+  // leases of their originals are over.
   struct Deaf {
     std::int64_t since_ns;
     std::int64_t last_lost_ns = INT64_MIN;

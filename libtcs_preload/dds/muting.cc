@@ -20,7 +20,7 @@ namespace {
 
 using HalfGuid = std::array<std::uint8_t, 12>;
 
-// Of a participant's GUID and of what it has.
+// The part that the GUIDs of a participant and of all that it has begin with.
 HalfGuid HalfGuidAt(const std::uint8_t* guid) {
   HalfGuid prefix;
   std::copy_n(guid, prefix.size(), prefix.begin());
@@ -57,7 +57,7 @@ Mute& Begin(Mutes& state, const ddsi_domaingv& gv) {
   return place->second;
 }
 
-// Others miss participants that they do not hear.
+// Other processes miss participants that they do not hear.
 void EndLeases(Mute& mute, const std::vector<OwnNews>& all) {
   const std::int64_t now_ns = TheLink().now();
   for (const OwnNews& news : all) {
@@ -73,7 +73,7 @@ void EndLeases(Mute& mute, const std::vector<OwnNews>& all) {
   }
 }
 
-// What others have lost they are told of as it is now.
+// Others are told of all that they have lost, as it is now.
 void LetGo(const Mute& mute, const std::vector<OwnNews>& all) {
   const auto is_lost = [&mute](const shm::DdsMessage& message) {
     return mute.lost.contains(HalfGuidAt(message.subject));
@@ -97,7 +97,7 @@ bool HoldsBack(const ddsi_domaingv& gv, const shm::DdsMessage& message, const vo
   if (gv.mute == 0 && !AnyIsMute()) return false;
   Mutes& state = TheMutes();
   const std::lock_guard lock(state.mutex);
-  // What comes before it may still be held.
+  // Messages from before may still be held.
   if (gv.mute == 0 && !state.by_domain.contains(gv.config.domainId)) return false;
   Begin(state, gv).held.Add(message, payload, size);
   return true;

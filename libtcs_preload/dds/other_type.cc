@@ -42,7 +42,7 @@ const ddsi_sertype_ops kTypeOperations = [] {
   return ops;
 }();
 
-// Its bytes, as long as it lives.
+// The bytes of a sample, as long as this object lives.
 class Serialised {
  public:
   explicit Serialised(const ddsi_serdata* sample)

@@ -58,7 +58,7 @@ void Send(const ddsi_domaingv& gv, shm::DdsMessage& message, const Payload& payl
   if (!HoldsBack(gv, message, payload.data(), payload.size())) {
     SendHeld(message, payload);
   } else if (message.to == shm::kDdsEverybody) {
-    NoteToldItself(message, true);  // it will come, if the program meets itself then
+    NoteToldItself(message, true);  // the message will come, if the program meets itself then
   }
 }
 

@@ -1,5 +1,5 @@
-// What this process sends. Any thread; nothing but a lock of its own is taken, so that it may be
-// called from inside Cyclone, whatever that has locked.
+// The messages that this process sends. For any thread. The functions take nothing but a lock of
+// their own, so that they may be called from inside Cyclone, whatever Cyclone has locked.
 #pragma once
 
 #include <cstddef>
@@ -20,14 +20,16 @@ std::uint32_t OwnProcess();
 
 shm::DdsMessage MessageOf(shm::DdsKind kind, std::uint32_t domain, const Guid& subject);
 
-// Of a domain, whose name the message has. It is held back where the domain is mute (muting.h).
+// Sends a message of a domain, whose name the message has. The message is held back where the
+// domain is mute (muting.h).
 void Send(const ddsi_domaingv& gv, shm::DdsMessage& message, const Payload& payload);
 
-// A sample's bytes as Cyclone has serialised them. One that is too large is counted and named.
+// Sends a sample's bytes as Cyclone has serialised them. A sample that is too large is counted and
+// named.
 void SendSample(const ddsi_domaingv& gv, shm::DdsMessage& message, const ddsi_serdata& sample,
                 std::string_view topic);
 
-// What has been held back.
+// Sends a message that has been held back.
 void SendHeld(shm::DdsMessage& message, const Payload& payload);
 
 // Has the deliverer look at what other threads of this process have left for it (deliverer.h).

@@ -1,8 +1,9 @@
-// What the program has told others of its participants and endpoints, kept for the case that it
-// meets itself: that it has several domains of one name on the network (program.h).
+// The news that the program has told others of its participants and endpoints, kept for the case
+// that the program meets itself: that it has several domains of one name on the network
+// (program.h).
 //
 // Such news goes through the coordinator, to this process as to others, in order with samples. But
-// what was told before the second domain was there is only here.
+// news that was told before the second domain was there is only here.
 //
 // Thread-safe.
 #pragma once
@@ -19,14 +20,14 @@ struct OwnNews {
   Payload payload;
 };
 
-// Before it is sent.
+// Called before the message is sent.
 void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload);
 // Whether what has been noted goes through the coordinator to this process, too.
 void NoteToldItself(const shm::DdsMessage& message, bool is_told);
 
 // The announcements that are there, in the order in which they came, of domains in which the
-// program meets itself, but for those that it is told of through the coordinator: what these say is
-// true when it comes, after what came before it.
+// program meets itself, but for announcements that the program is told of through the coordinator:
+// what such an announcement says is true when it comes, after what came before it.
 std::vector<OwnNews> NewsForItself();
 
 // All announcements that are there of what the program has in this domain.

@@ -20,17 +20,18 @@ struct Domain {
   std::vector<Guid> participants;
   std::set<Guid> past_participants;
   int visits = 0;
-  int ends = 0;  // threads that are about to end it
+  int ends = 0;  // threads that are about to end the domain
   std::map<std::pair<std::string, std::string>, ddsi_sertype*> types;
 };
 
-// The last sample shipped to a process, referred to so that no other can have its address.
+// The last sample shipped to a process, referred to so that no other sample can have its address.
 struct Shipped {
   ddsi_serdata* sample = nullptr;
   const Tap* by = nullptr;
 };
 
-// Of the process's readers of a writer's topic; looked at again when the taps have changed.
+// A promise to the process's readers of a writer's topic; looked at again when the taps have
+// changed.
 struct Promise {
   std::uint64_t taps_version = 0;
   bool is_made = false;
@@ -55,14 +56,14 @@ struct Reader {
 
 using Prefix = std::pair<std::uint64_t, std::uint32_t>;
 
-// What is kept of a writer that never unregisters its instances.
+// The most instances that are kept of a writer that never unregisters its instances.
 constexpr std::size_t kMostInstances = 4096;
 
 struct ProgramState {
   std::mutex mutex;
   std::condition_variable left;                                            // by a visitor
   std::set<std::pair<std::uint32_t, Prefix>> shadows;                      // by domain
-  std::map<std::pair<std::uint32_t, Guid>, std::string> shadow_endpoints;  // their topics
+  std::map<std::pair<std::uint32_t, Guid>, std::string> shadow_endpoints;  // the endpoints' topics
   std::map<std::uint32_t, Domain> domains;
   std::set<std::uint32_t> met;  // names of which there have been several at a time
   std::unordered_map<Guid, Writer, GuidHash> writers;

@@ -17,7 +17,7 @@ std::vector<std::uint32_t> DomainsThatEndWith(dds_entity_t entity) {
   dds_domainid_t domain = 0;
   if (dds_get_domainid(entity, &domain) != DDS_RETCODE_OK) return {};
   const dds_entity_t participant = dds_get_participant(entity);
-  if (participant <= 0) return {domain};  // it is a domain
+  if (participant <= 0) return {domain};  // the entity is a domain
   dds_guid_t guid;
   if (participant != entity || dds_get_guid(entity, &guid) != DDS_RETCODE_OK) return {};
   if (!IsLastParticipant(GuidAt(guid.v))) return {};
@@ -32,7 +32,7 @@ bool IsShadowHandle(dds_entity_t participant) {
          IsShadow(domain, InnerOf(GuidAt(guid.v)));
 }
 
-// What `list` has, but for shadows, as Cyclone's own calls return it.
+// The entities that `list` has, but for shadows, as Cyclone's own calls return them.
 template <class List>
 dds_return_t WithoutShadows(dds_entity_t* entities, std::size_t size, List list) {
   const dds_return_t count = list(nullptr, 0);
@@ -68,8 +68,8 @@ dds_entity_t CreateTopic(dds_entity_t participant, const char* name, bool allow_
   return topic;
 }
 
-// A writer has met all readers that there are before its program goes on: what it writes at once
-// reaches them, too, be they volatile, and recordings have it at its time.
+// A writer has met all readers that there are before its program goes on: samples that it writes at
+// once reach them, too, be they volatile, and recordings have the samples at their time.
 dds_entity_t CreateWriter(dds_entity_t of, dds_entity_t topic, const dds_qos_t* qos,
                           const dds_listener_t* listener) {
   const dds_entity_t writer = Real().dds_create_writer(of, topic, qos, listener);
@@ -78,8 +78,9 @@ dds_entity_t CreateWriter(dds_entity_t of, dds_entity_t topic, const dds_qos_t* 
 }
 
 // The types are let go before the participant goes, the shadows after it: the program's readers and
-// writers must not see them go. The deliverer is out of a domain before that is taken down. On the
-// deliverer itself a listener deletes, as in Cyclone's own threads: it cannot wait for itself.
+// writers must not see them go. The deliverer is out of a domain before the domain is taken down.
+// On the deliverer itself a listener deletes, as in Cyclone's own threads: the deliverer cannot
+// wait for itself.
 dds_return_t Delete(dds_entity_t entity) {
   const std::vector<std::uint32_t> ending = DomainsThatEndWith(entity);
   for (const std::uint32_t domain : ending) BeginEnd(domain, !IsDeliverer());
@@ -155,7 +156,7 @@ dds_return_t PinEntity(dds_entity_t handle, dds_entity** entity) {
   return Real().dds_entity_pin(handle, entity);
 }
 
-// A domain's are participants.
+// The children of a domain are participants.
 dds_return_t GetChildren(dds_entity_t entity, dds_entity_t* children, std::size_t size) {
   if (dds_get_participant(entity) > 0) return Real().dds_get_children(entity, children, size);
   return WithoutShadows(children, size, [entity](dds_entity_t* all, std::size_t most) {

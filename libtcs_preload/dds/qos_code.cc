@@ -13,9 +13,9 @@ using shm::DdsBytes;
 using shm::DdsEndpoint;
 using shm::DdsQos;
 
-// Cyclone's own properties tell of the process number and the host's name. How long those are
-// changes nothing of a run with set costs, in which allocations are charged and programs wait for
-// room in shared memory.
+// Cyclone's own properties tell of the process number and the host's name. The length of these
+// texts changes nothing of a run with set costs, in which allocations are charged and programs wait
+// for room in shared memory.
 constexpr std::size_t kPropertiesRoom = 1024;
 
 // Lays texts behind the structure that a payload begins with.
@@ -31,7 +31,7 @@ class Texts {
     return where;
   }
   DdsBytes Add(std::string_view text) { return Add(text.data(), text.size()); }
-  // As long whatever the text is, up to `room`; and so are the allocations.
+  // The payload is as long whatever the text is, up to `room`; and so are the allocations.
   DdsBytes AddWithRoom(std::string_view text, std::size_t room) {
     const std::size_t end = bytes_.size() + std::max(text.size(), room);
     bytes_.reserve(end);
@@ -94,7 +94,8 @@ void EncodeTexts(const dds_qos_t* qos, DdsQos& to, Texts& texts) {
   }
 }
 
-// Those that others are to see. Programs' own are not among them: Cyclone keeps them to itself.
+// The properties that others are to see. Programs' own properties are not among them: Cyclone keeps
+// these to itself.
 void EncodeProperties(const dds_qos_t* qos, DdsQos& to, Texts& texts) {
   if ((qos->present & QP_PROPERTY_LIST) == 0) return;
   const auto& text = qos->property.value;
@@ -187,7 +188,7 @@ DdsQos Encode(const dds_qos_t* qos, Texts& texts) {
   return to;
 }
 
-// What a DdsBytes leads to; empty where it leads out of the payload.
+// The text that a DdsBytes leads to; empty where it leads out of the payload.
 std::string_view View(const Payload& payload, DdsBytes where) {
   if (where.offset > payload.size() || where.size > payload.size() - where.offset) return {};
   return {reinterpret_cast<const char*>(payload.data()) + where.offset, where.size};

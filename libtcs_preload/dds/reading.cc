@@ -42,10 +42,10 @@ const dds_sample_info_t* InfosOf(First first, Others... others) {
   }
 }
 
-// The samples lie in memory that all of the program's threads share, and one on another core may
-// have put them there at a time that the caller has not come to yet: it goes on when it has. What
-// is further ahead has a timestamp of its writer's making. The deliverer goes on: others wait for
-// what else it has.
+// The samples lie in memory that all of the program's threads share, and a thread on another core
+// may have put them there at a time that the caller has not come to yet: the caller goes on when it
+// has. A sample that is further ahead has a timestamp of its writer's making. The deliverer goes
+// on: others wait for what else the deliverer has.
 void AwaitWrites(const dds_sample_info_t* infos, dds_return_t count) {
   const std::int64_t most = TheLink().behind_ns();
   if (most == 0 || IsDeliverer()) return;

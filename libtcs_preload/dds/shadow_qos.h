@@ -5,7 +5,7 @@
 
 namespace tcs::dds {
 
-// QoS that a message carries, as long as it lives.
+// QoS that a message carries, as long as this object lives.
 class Qos {
  public:
   explicit Qos(dds_qos_t* qos) : qos_(qos) {}
@@ -18,8 +18,8 @@ class Qos {
   dds_qos_t* qos_;
 };
 
-// Of an endpoint, as its shadow has them: it is to match what is in this process. The caller
-// deletes them.
+// The QoS of an endpoint, as its shadow has them: the shadow is to match what is in this process.
+// The caller deletes the QoS.
 dds_qos_t* ShadowQos(const Payload& payload);
 
 bool IsReliable(const dds_qos_t* qos);

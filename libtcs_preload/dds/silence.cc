@@ -4,8 +4,8 @@
 
 namespace tcs::dds {
 
-// After the real one, which has taken over what the user's configuration says: it may name
-// interfaces, peers and iceoryx, none of which goes with "no transport".
+// After the real function, which has taken over what the user's configuration says: the
+// configuration may name interfaces, peers and iceoryx, none of which goes with "no transport".
 int PrepareConfiguration(ddsi_domaingv* gv, cfgst* configuration) {
   const int result = Real().rtps_config_prep(gv, configuration);
   if (result < 0) return result;

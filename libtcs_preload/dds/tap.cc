@@ -17,14 +17,13 @@ constexpr std::size_t kMostHad = 64;
 
 Tap& TapOf(ddsi_rhc* rhc) { return *reinterpret_cast<Tap*>(rhc); }
 
-// Of a sample that a tap carries for all readers of its process, what becomes of it where too many
-// wait.
+// The treatment of a sample that a tap carries for all readers of its process, where too many wait.
 struct Carried {
   WriterKeeps keeps;
   std::uint64_t instance;
 };
 
-// To the tap's reader alone unless it is carried for all.
+// Ships the sample to the tap's reader alone unless the sample is carried for all.
 void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample,
           const Carried* carried) {
   shm::DdsMessage message =
@@ -48,12 +47,12 @@ bool HasHad(const Tap& tap, const ddsi_serdata* sample) {
       tap.had, [sample](const ddsi_serdata* had) { return IsSameSample(had, sample); });
 }
 
-// One that Cyclone has made of another type does not have the time.
+// A sample that Cyclone has made of another type does not have the time.
 bool WasBeforeLoss(const Tap& tap, const ddsi_serdata& sample) {
   return sample.twrite.v != INT64_MIN && sample.twrite.v <= tap.lost_at_ns;
 }
 
-// To the tap's reader alone, unless it has had it.
+// Ships the sample to the tap's reader alone, unless the reader has had it.
 void ShipAlone(Tap& tap, const ddsi_guid_t& writer, ddsi_serdata* sample) {
   if (WasBeforeLoss(tap, *sample) || HasHad(tap, sample)) return;
   tap.had.push_back(ddsi_serdata_ref(sample));
@@ -73,8 +72,8 @@ bool Announced(const Tap& tap, const ddsi_guid_t& guid) {
   return true;
 }
 
-// While it lives, the instance that a sample is of for its writer: a tap of another type does not
-// know keys.
+// While this object lives, the instance that a sample is of for its writer: a tap of another type
+// does not know keys.
 class InstanceOfWriter {
  public:
   InstanceOfWriter(const Tap& tap, const ddsi_guid_t& guid, ddsi_serdata* sample,

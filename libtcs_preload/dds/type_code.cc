@@ -38,8 +38,8 @@ ddsi_sertype_cdr_data_t CdrOf(const Payload& bytes) {
           reinterpret_cast<std::uint8_t*>(const_cast<std::byte*>(bytes.data()))};
 }
 
-// As those of a topic are. Cyclone aborts the program at identifiers of a kind that it does not
-// know.
+// True if all identifiers are hashes, as those of a topic are. Cyclone aborts the program at
+// identifiers of a kind that it does not know.
 bool NamesTypesByHash(const ddsi_typeinfo_t& information) {
   const auto all_are = [](const DDS_XTypes_TypeIdentifierWithDependencies& ids,
                           DDS_XTypes_TypeKind kind) {

@@ -1,5 +1,5 @@
-// What XTypes says of a type, as bytes: its TypeInformation, which identifies it and what it
-// depends on, and its TypeMapping, which has the type objects of all of these.
+// The bytes that XTypes has for a type: the TypeInformation, which identifies the type and the
+// types that it depends on, and the TypeMapping, which has the type objects of all of these.
 #pragma once
 
 #include <cstddef>
@@ -21,14 +21,15 @@ struct TypeCode {
 
 TypeCode CodeOf(const ddsi_sertype* type);
 
-// The same if Cyclone can read it, else empty: Cyclone trusts the bytes from which it makes a type.
+// The given code if Cyclone can read it, else an empty code: Cyclone trusts the bytes from which it
+// makes a type.
 TypeCode Checked(TypeCode code);
 
-// Null if it is empty. The caller owns them.
+// Null if the code is empty. The caller owns the results.
 ddsi_typeinfo_t* InformationOf(const TypeCode& code);
 ddsi_typemap_t* MappingOf(const TypeCode& code);
 
-// Whether the sertype is of the type that the code says: any is if it says nothing.
+// Whether the sertype is of the type that the code says: any sertype is if the code says nothing.
 bool IsOfType(const ddsi_sertype* type, const TypeCode& code);
 
 }  // namespace tcs::dds

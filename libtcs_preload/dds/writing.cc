@@ -12,10 +12,10 @@
 namespace tcs::dds {
 namespace {
 
-// Who waits for a reader looks that often whether it still is one.
+// A thread that waits for a reader looks that often whether the reader still is one.
 constexpr std::int64_t kLookAgainNs = 10'000'000;
 
-// 0: none.
+// The process of a reader that is full; 0: none.
 std::uint32_t FullReaderOf(const Guid& writer) {
   for (const std::uint32_t process : PromisedProcesses(writer)) {
     if (TheLink().is_full(process)) return process;
@@ -23,7 +23,8 @@ std::uint32_t FullReaderOf(const Guid& writer) {
   return 0;
 }
 
-// What a mute domain holds of the writer's nobody has acknowledged. False: still so at the end.
+// Nobody has acknowledged the samples of the writer that a mute domain holds. False: still so at
+// the end.
 bool AwaitHearing(dds_entity_t writer, const Guid& guid, std::int64_t end_ns) {
   dds_domainid_t domain = 0;
   dds_get_domainid(writer, &domain);
@@ -41,7 +42,7 @@ bool AwaitHearing(dds_entity_t writer, const Guid& guid, std::int64_t end_ns) {
 
 // As Cyclone does it over a network: a reliable writer that has to keep all that others have not
 // taken yet waits before it writes, and gives up after max_blocking_time, having written nothing.
-// The deliverer never waits: others may be waiting for what it takes.
+// The deliverer never waits: others may be waiting for what the deliverer takes.
 bool HasRoom(dds_entity_t writer) {
   dds_guid_t wire;
   if (IsDeliverer() || dds_get_guid(writer, &wire) != DDS_RETCODE_OK) return true;
@@ -59,7 +60,7 @@ bool HasRoom(dds_entity_t writer) {
   return true;
 }
 
-// What a write takes over, whether it succeeds or not.
+// Releases what a write takes over, whether the write succeeds or not.
 void Release(ddsi_serdata* sample) { ddsi_serdata_unref(sample); }
 template <class Argument>
 void Release(const Argument&) {}

@@ -1,4 +1,5 @@
-// The calls that write (calls.h): they first wait for readers elsewhere that cannot keep up.
+// The calls that write (calls.h): such a call first waits for readers elsewhere that cannot keep
+// up.
 #pragma once
 
 #include "libtcs_preload/dds/calls.h"

@@ -14,7 +14,7 @@ std::int64_t ShownBy(const shm::ThreadSlot& slot) {
   return slot.clock.last_shown_ns.load(std::memory_order_relaxed);
 }
 
-// Who yields does more in between: looks for work, say.
+// A thread that yields does more in between: it looks for work, say.
 constexpr std::int64_t kYieldGaps = 10;
 
 bool Spins(shm::ThreadSlot& slot, std::uintptr_t site, std::int64_t now_ns, std::int64_t shown_ns,
@@ -24,7 +24,7 @@ bool Spins(shm::ThreadSlot& slot, std::uintptr_t site, std::int64_t now_ns, std:
 
 std::int64_t TimeOf(const shm::ThreadSlot& slot) { return shm::ReadClock(slot.clock).time_ns; }
 
-// Its turn may have ended.
+// The thread goes on spinning; its turn may have ended.
 void GoOn(shm::ThreadSlot& slot) { shm::GoOnSpinning(slot.spin, TimeOf(slot), ShownBy(slot)); }
 
 }  // namespace
@@ -48,11 +48,11 @@ void tcs_pause_in_turn(std::uintptr_t site) {
     return;
   }
   tcs::shm::ThreadSlot& slot = *t->slot;
-  // What the program has looked at its clock, and not what is looked at here.
+  // The time that the program's own looks at its clock have shown, and not the look here.
   const std::int64_t shown_ns = ShownBy(slot);
   if (g_header->accounting == tcs::shm::Accounting::kFixed) {
     Charge(slot.clock, tcs::shm::kPauseNs);
-    NowNs(*t);  // it may have come to its horizon
+    NowNs(*t);  // the thread may have come to its horizon
   }
   const bool spins = Spins(slot, site, TimeOf(slot), shown_ns, slot.spin_gap_ns);
   slot.spin.shown_ns = ShownBy(slot);

@@ -1,7 +1,8 @@
-// Pauses of a program that spins: it looks at memory until another thread has changed it.
+// Pauses of a program that spins, that is, looks at memory until another thread has changed it.
 //
 // On one processor of the host that thread cannot run meanwhile. So a thread that spins tells the
-// coordinator, which has the others come along, and itself look again (spin_waits.h there).
+// coordinator, which has the others come along, and the thread itself look again (spin_waits.h
+// there).
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,8 @@ extern "C" {
 // flags and vectors are preserved.
 __attribute__((visibility("hidden"))) void tcs_pause();
 
-// `site`: where the program goes on. 0: it is to be counted by tcs_pause_in_turn. Uses general
-// registers only.
+// `site`: where the program goes on. 0: the pause is to be counted by tcs_pause_in_turn. Uses
+// general registers only.
 __attribute__((visibility("hidden"))) int tcs_pause_at_once(std::uintptr_t site);
 // May wait until the thread has its turn again.
 __attribute__((visibility("hidden"))) void tcs_pause_in_turn(std::uintptr_t site);

@@ -1,10 +1,10 @@
 // Samples for Cyclone DDS that are the bytes that they travel as, and what a type of such samples
 // has in common with others: for programs that carry samples without knowing what is in them (the
 // gateway, and libtcs_dds.so for types that its program does not have). A sample's key is not
-// known: all of a type are one instance.
+// known: all samples of a type are one instance.
 //
-// Unlike the rest of shm/ this needs libddsc and libstdc++, and allocates: it is for those two
-// alone.
+// Unlike the rest of shm/ this file needs libddsc and libstdc++, and allocates: it is for those two
+// programs alone.
 #pragma once
 
 #include <dds/ddsi/ddsi_serdata.h>
@@ -28,7 +28,7 @@ inline const ByteSample& ByteSampleOf(const ddsi_serdata* sample) {
   return *static_cast<const ByteSample*>(sample);
 }
 
-// The caller owns it.
+// The caller owns the returned sample.
 inline ByteSample* NewByteSample(const ddsi_sertype* type, ddsi_serdata_kind kind,
                                  std::vector<std::byte> bytes) {
   auto* sample = new ByteSample;
@@ -38,7 +38,7 @@ inline ByteSample* NewByteSample(const ddsi_sertype* type, ddsi_serdata_kind kin
   return sample;
 }
 
-// What Cyclone asks of such a sample, in the order of ddsi_serdata_ops.
+// The operations that Cyclone calls on such a sample, in the order of ddsi_serdata_ops.
 struct ByteSampleCalls {
   static bool SameKey(const ddsi_serdata*, const ddsi_serdata*) { return true; }
 
@@ -133,8 +133,8 @@ inline const ddsi_serdata_ops kByteSampleOperations = [] {
   return ops;
 }();
 
-// Of a type whose samples these are, a struct `Type` that derives from ddsi_sertype: what every
-// such type answers alike. `equal` and `hash` are left to it: Cyclone has compared the names
+// The operations that every type of such samples has in common. `Type` is a struct that derives
+// from ddsi_sertype. `equal` and `hash` are left to each type: Cyclone has compared the names
 // already.
 template <typename Type>
 ddsi_sertype_ops ByteTypeOperations() {

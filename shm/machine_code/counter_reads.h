@@ -3,9 +3,9 @@
 // which programs execute while they look at memory again and again, is replaced in the same way
 // where it is sought; "a read" stands for either here.
 //
-// Two ways are tried. Instructions around the read, and it with them, go to that other place, if a
-// jump's bytes hold whole ones into which nothing leads. Or a jump of two bytes leads into what
-// lies unused between functions, and a long one from there.
+// Two ways are tried. Instructions around the read, and the read with them, go to that other place,
+// if a jump's bytes hold whole instructions into which nothing leads. Or a jump of two bytes leads
+// into unused bytes between functions, and a long jump leads on from there.
 //
 // Pure; async-signal-safe.
 #pragma once
@@ -19,7 +19,7 @@ namespace tcs::shm {
 
 inline constexpr std::size_t kJumpSize = 5, kShortJumpSize = 2;
 
-// How long the read of the counter at `at` is; 0: it is none.
+// How long the read of the counter at `at` is; 0: there is none.
 inline std::size_t CounterReadSize(Code at, Code end) {
   if (end - at >= 2 && at[0] == 0x0f && at[1] == 0x31) return 2;
   if (end - at >= 3 && at[0] == 0x0f && at[1] == 0x01 && at[2] == 0xf9) return 3;
@@ -28,19 +28,19 @@ inline std::size_t CounterReadSize(Code at, Code end) {
 
 inline bool IsPause(Code at, Code end) { return end - at >= 2 && at[0] == 0xf3 && at[1] == 0x90; }
 
-// What is to be replaced.
+// The instructions that are to be replaced.
 struct Sought {
   bool counter = true;  // reads of the counter
   bool pauses = false;
 
-  // How long one at `at` is; 0: there is none.
+  // How long such an instruction at `at` is; 0: there is none.
   std::size_t SizeAt(Code at, Code end) const {
     if (pauses && IsPause(at, end)) return 2;
     return counter ? CounterReadSize(at, end) : 0;
   }
 };
 
-// True where what follows the read puts the two halves of the counter together, as compilers and
+// True where the code after the read puts the two halves of the counter together, as compilers and
 // people write it: there the bytes are the instruction, whatever function they are in.
 inline bool TakesUpCounter(CodeRange code, Code read) {
   constexpr std::uint8_t kUpperHalf[] = {0x48, 0xc1, 0xe2, 0x20};  // shl $32, %rdx
@@ -80,7 +80,7 @@ void ForEachLookingLikeARead(CodeRange code, const Sought& sought, const Found& 
   for (; at < code.end; ++at) look(at);
 }
 
-// Calls `found` with the target of whatever may be a jump or branch with 32 bits.
+// Calls `found` with the target of everything that may be a jump or branch with 32 bits.
 template <class Found>
 void ForEachLongTarget(CodeRange code, const Found& found) {
   const __m128i jump = _mm_set1_epi8(static_cast<char>(0xe9)), two_bytes = _mm_set1_epi8(0x0f);
@@ -104,17 +104,17 @@ void ForEachLongTarget(CodeRange code, const Found& found) {
 
 struct Replacement {
   Code read = nullptr;
-  CodeRange moved;         // the read, and what goes with it to another place, reads among it
+  CodeRange moved;         // the read and the instructions that move with it, reads among them
   Code padding = nullptr;  // where the long jump goes; null: to the begin of `moved`
 
-  // True where a jump to `target` would come into the midst of what is replaced.
+  // True where a jump to `target` would come into the midst of the replaced instructions.
   bool IsEnteredBy(Code target) const { return moved.begin < target && target < moved.end; }
 };
 
 // Why a read cannot be replaced.
 enum class NotReplaced : std::uint8_t {
   kNo,
-  kWithAnother,  // it is: it goes with the one before it
+  kWithAnother,  // the read is replaced: it goes with the read before it
   kIsNoInstruction,
   kCodeIsUnknown,
   kNoRoom
@@ -139,7 +139,7 @@ inline bool IsWithinAnother(CodeRange function, Code at) {
   return true;
 }
 
-// What compilers put where nothing is executed.
+// True for an instruction that compilers put where nothing is executed.
 inline bool IsFiller(Code at, const Instruction& one) {
   return one.size != 0 &&
          (one.opcode == 0x90 || one.opcode == 0xcc || (one.opcode == 0x1f && one.size > 2)) &&
@@ -163,7 +163,7 @@ class Neighbourhood {
         at_[kBefore + after_] = at;
         what_[kBefore + after_] = one;
       } else if (!has_read_) {
-        is_whole_ = true;  // there it is part of another instruction
+        is_whole_ = true;  // there the read is part of another instruction
         return;
       }
       leads_anywhere_ |= one.flow == Flow::kJumpAnywhere && one.relative_at == 0;
@@ -175,8 +175,8 @@ class Neighbourhood {
   bool has_read() const { return has_read_; }
   bool is_whole() const { return is_whole_; }
 
-  // The shortest range for a jump that begins so many instructions before the read; an empty one:
-  // there is none.
+  // The shortest range for a jump that begins `before` instructions before the read; an empty
+  // range: there is none.
   CodeRange From(int before) const {
     if (before > before_) return {};
     const int read = kBefore, first = read - before;
@@ -184,13 +184,13 @@ class Neighbourhood {
     for (int i = first; i <= read + after_; ++i) {
       const bool is_last = i >= read && at_[i] + what_[i].size >= at_[first] + kJumpSize;
       if (!goes_on && !IsFiller(at_[i], what_[i])) return {};
-      // What follows a jump is not executed if nothing leads there.
+      // Instructions after a jump are not executed if nothing leads there.
       const bool may_jump = is_last || (i > read && goes_on);
       if (i != read && !CanMove(i, may_jump)) return {};
       goes_on &= what_[i].flow == Flow::kNext || what_[i].flow == Flow::kBranch;
       if (!is_last) continue;
-      // Where a table of targets may lead is not known. Between a read and what takes up its
-      // result it leads to no place.
+      // Where a table of targets may lead is not known. Such a table leads to no place between a
+      // read and the instruction that takes up its result.
       if (leads_anywhere_ && (before > 0 || i > read + 1)) return {};
       return {at_[first], at_[i] + what_[i].size};
     }
@@ -231,8 +231,8 @@ class Neighbourhood {
   bool has_read_ = false, is_whole_ = false, leads_anywhere_ = false;
 };
 
-// Of a gap between functions what fills it up to where the next one is aligned, and is never
-// executed.
+// The part of a gap between functions that fills it up to the alignment of the next function, and
+// is never executed.
 inline CodeRange PaddingIn(CodeRange gap) {
   const auto past = reinterpret_cast<std::uintptr_t>(gap.begin);
   const Code most = gap.begin + ((~past + 1) & 15);
@@ -246,7 +246,8 @@ inline CodeRange PaddingIn(CodeRange gap) {
   return {gap.begin, at};
 }
 
-// Where in it a long jump has room that a short one from the read reaches; null: nowhere.
+// The place in the padding that has room for a long jump and that a short jump from the read
+// reaches; null: there is none.
 inline Code RoomFor(CodeRange padding, Code read, Code taken_until) {
   const Code at = padding.begin < taken_until ? taken_until : padding.begin;
   if (at > padding.end || static_cast<std::size_t>(padding.end - at) < kJumpSize) return nullptr;

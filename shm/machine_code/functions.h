@@ -1,8 +1,8 @@
 // Where the functions of a program or library begin and end, as its table for unwinding says
 // (.eh_frame_hdr and .eh_frame: System V ABI for AMD64, and the Linux Standard Base).
 //
-// All addresses are those of an image as it lies in memory. Pure; async-signal-safe; what is wrong
-// in a table is never followed.
+// All addresses are those of an image as it lies in memory. Pure; async-signal-safe; wrong values
+// in a table are never followed.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,8 @@ class UnwindTable {
  public:
   // Knows no function.
   UnwindTable() = default;
-  // `header`: .eh_frame_hdr; `readable`: what it lies in; `image`: where functions may be.
+  // `header`: .eh_frame_hdr; `readable`: the memory that the header lies in; `image`: where
+  // functions may be.
   UnwindTable(Code header, CodeRange readable, CodeRange image)
       : header_(header), readable_(readable), image_(image) {
     constexpr std::uint8_t kPlain32 = 0x03, kRelativeToHeader32 = 0x3b;
@@ -47,7 +48,7 @@ class UnwindTable {
     return function.Contains(at) ? function : CodeRange{};
   }
 
-  // What is between two functions, around `at`: padding, or code that the table does not know.
+  // The range between two functions that `at` is in: padding, or code that the table does not know.
   CodeRange GapAround(Code at) const {
     const std::uint32_t next = FirstAfter(at);
     if (next == 0 || next == count_) return {};
@@ -56,7 +57,8 @@ class UnwindTable {
     return {before.end, Begin(next)};
   }
 
-  // What lies between a function's end and the next one's begin; nothing can be said of the last.
+  // The range between a function's end and the begin of the next function; empty for the last
+  // function, of which nothing can be said.
   CodeRange GapAfter(const CodeRange& function) const {
     const std::uint32_t next = FirstAfter(function.begin);
     if (next >= count_ || Begin(next) <= function.end) return {};
@@ -101,7 +103,7 @@ class UnwindTable {
     if (!IsReadable(entry, 24)) return {};
     const Code to_common = entry + 4;
     const Code common = to_common - Read<std::uint32_t>(to_common);
-    // Relative to where it stands, in 32 bits or in 64.
+    // An address relative to its own place, in 32 bits or in 64.
     constexpr int kRelative32 = 0x1b, kRelative64 = 0x1c;
     const int encoding = EncodingOf(common);
     const Code begin = Begin(i);
@@ -116,7 +118,7 @@ class UnwindTable {
     return {begin, begin + size};
   }
 
-  // How an entry that has this one in common with others writes addresses; -1: not known.
+  // How an entry with the common part `common` writes addresses; -1: not known.
   int EncodingOf(Code common) const {
     constexpr std::size_t kMost = 48;
     if (!IsReadable(common, kMost) || Read<std::uint32_t>(common + 4) != 0) return -1;

@@ -10,7 +10,7 @@
 namespace tcs::shm {
 
 struct Image {
-  Code base = nullptr;  // what an address in the file is to be added to
+  Code base = nullptr;  // added to an address in the file, it gives the one in memory
   const Elf64_Phdr* segments = nullptr;
   std::size_t count = 0;
 
@@ -27,7 +27,7 @@ struct Image {
     }
   }
 
-  // From its first to its last segment, of which the parts between segments may not be readable.
+  // The range from the first to the last segment; its parts between segments may not be readable.
   CodeRange Whole() const {
     CodeRange whole;
     for (std::size_t i = 0; i < count; ++i) {

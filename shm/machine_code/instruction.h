@@ -29,7 +29,7 @@ struct Instruction {
   bool has_target = false;
   // True of jmp and jcc in their short form, whose target is 8 bits.
   bool is_short = false;
-  bool is_movable = true;   // by changing the above alone; it does the same at another place then
+  bool is_movable = true;   // by changing the above alone: it then does the same elsewhere
   std::uint8_t opcode = 0;  // the last byte of it
   std::int32_t relative = 0;
 
@@ -39,7 +39,7 @@ struct Instruction {
 
 namespace machine_code {
 
-// What follows an opcode.
+// The bytes that follow an opcode.
 enum : std::uint8_t {
   kModRm = 1,
   kByte = 2,      // an immediate of a byte
@@ -126,7 +126,7 @@ constexpr OpcodeMap TwoByteMap() {
 
 inline constexpr OpcodeMap kOneByte = OneByteMap(), kTwoByte = TwoByteMap();
 
-// What follows an opcode of a vector instruction (VEX, EVEX), by its map.
+// The bytes that follow an opcode of a vector instruction (VEX, EVEX), by its map.
 constexpr std::uint8_t OfVector(unsigned map, std::uint8_t opcode) {
   switch (map) {
     case 1:
@@ -144,7 +144,7 @@ constexpr std::uint8_t OfVector(unsigned map, std::uint8_t opcode) {
   }
 }
 
-// Of AMD's XOP.
+// The bytes that follow an opcode of AMD's XOP.
 constexpr std::uint8_t OfXop(unsigned map) {
   return map == 8 ? kModRm | kByte : map == 9 ? kModRm : map == 10 ? kModRm | kWhole : kUnknown;
 }
@@ -160,7 +160,8 @@ class Decoder {
     std::uint8_t follows = Opcode();
     if (!is_sound_ || (follows & kUnknown) != 0) return {};
     if ((follows & kModRm) != 0) follows |= ModRm();
-    // Branches' are 32 bits whatever the prefix says, on Intel's; where it matters it is not moved.
+    // On Intel's processors a branch has 32 bits whatever the prefix says; a branch with one is not
+    // moved.
     const bool is_target = is_two_byte_ ? IsLongBranch() : opcode_ == 0xe8 || opcode_ == 0xe9;
     std::size_t immediate = 0;
     if ((follows & kByte) != 0) immediate += 1;
@@ -189,7 +190,7 @@ class Decoder {
     return 0;
   }
 
-  // Everything before what follows the opcode.
+  // Reads the prefixes and the opcode; returns what follows the opcode.
   std::uint8_t Opcode() {
     std::uint8_t byte = Next();
     for (; IsPrefix(byte); byte = Next()) {
@@ -209,7 +210,7 @@ class Decoder {
     is_two_byte_ = true;
     opcode_ = Next();
     if (opcode_ == 0x38 || opcode_ == 0x3a) {
-      is_vector_ = true;  // as those it leads nowhere
+      is_vector_ = true;  // like a vector instruction it leads nowhere
       const std::uint8_t follows = opcode_ == 0x38 ? kModRm : kModRm | kByte;
       opcode_ = Next();
       return follows;
@@ -250,7 +251,7 @@ class Decoder {
     return OfXop(map);
   }
 
-  // What follows besides, as the register in it says.
+  // Reads ModRM; returns what follows besides, as the register in it says.
   std::uint8_t ModRm() {
     mod_rm_ = Next();
     const unsigned mod = mod_rm_ >> 6, memory = mod_rm_ & 7;
@@ -325,14 +326,14 @@ class Decoder {
     if (opcode_ >= 0x70 && opcode_ <= 0x7f) TargetAt(immediate_at, Flow::kBranch, true);
     if (opcode_ >= 0xe0 && opcode_ <= 0xe3) {
       TargetAt(immediate_at, Flow::kBranch, true);
-      instruction_.is_movable = false;  // it has no long form
+      instruction_.is_movable = false;  // the instruction has no long form
     }
   }
 
   void FlowOfTwoByte(std::size_t immediate_at) {
     if (IsLongBranch()) return TargetAt(immediate_at, Flow::kBranch, false);
     if (opcode_ == 0x0b || opcode_ == 0xb9 || opcode_ == 0xff) return Leads(Flow::kEnd);
-    // They remember where they are.
+    // syscall and sysenter remember where they are.
     if (opcode_ == 0x05 || opcode_ == 0x34) Leads(Flow::kNext);
   }
 

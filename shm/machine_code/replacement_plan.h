@@ -12,11 +12,11 @@ namespace tcs::shm {
 // of another.
 class ReplacementPlan {
  public:
-  // `code`: what the reads are in.
+  // `code`: the code that the reads are in.
   ReplacementPlan(CodeRange code, const UnwindTable& functions)
       : code_(code), functions_(functions) {}
 
-  // `targets`: what is known to be jumped to from other functions.
+  // `targets`: the places that other functions are known to jump to.
   NotReplaced Next(Code read, const Code* targets, std::size_t target_count,
                    Replacement* replacement) {
     CodeRange function = functions_.FunctionAt(read);
@@ -26,7 +26,7 @@ class ReplacementPlan {
     return NextIn(function, read, targets, target_count, replacement);
   }
 
-  // The same in a function that is known.
+  // As Next, in a function that is known.
   NotReplaced NextIn(CodeRange function, Code read, const Code* targets, std::size_t target_count,
                      Replacement* replacement) {
     if (function.IsEmpty()) return NotReplaced::kCodeIsUnknown;
@@ -79,7 +79,7 @@ struct PlanRoom {
   Code targets[kMostTargets];
 };
 
-// All replacements in some code, which nothing elsewhere in it jumps into.
+// All replacements in some code, into which no other place in the code jumps.
 class Replacements {
  public:
   explicit Replacements(PlanRoom& room, const Sought& sought = {}) : room_(room), sought_(sought) {}
@@ -131,7 +131,7 @@ class Replacements {
     }
   }
 
-  // True if something elsewhere in the code jumps into what is to be replaced; the next plan knows.
+  // True if another place in the code jumps into a replacement; the next plan knows of such jumps.
   bool IsEntered(CodeRange code) {
     const std::size_t before = target_count_;
     const Code least = room_.replacements[0].moved.begin;

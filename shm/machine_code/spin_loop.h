@@ -3,8 +3,9 @@
 //
 // Such a loop calls nothing and stores nothing, and looks at the same memory each time: no register
 // that says where the memory is changes but by being read from memory itself. An exchange or a
-// compare-and-exchange counts as a look: that is how locks are tried. Loops that go through memory,
-// or that write results, are none. What is not known to be harmless is not.
+// compare-and-exchange counts as a look: locks are tried in this way. Loops that go through memory,
+// or that write results, are none. An instruction that is not known to be harmless is not taken for
+// harmless.
 //
 // Pure; async-signal-safe.
 #pragma once
@@ -19,13 +20,14 @@ namespace machine_code {
 // General registers, as bits.
 using Registers = std::uint32_t;
 
-// What an instruction of such a loop does; `is_known` false: it has no place in one.
+// The effect of an instruction of such a loop; `is_known` false: the instruction has no place in
+// one.
 struct LoopStep {
   bool is_known = false;
-  bool looks = false;         // at memory,
-  Registers where = 0;        // which these say,
-  Registers from_memory = 0;  // and has it in this one
-  Registers changes = 0;      // computes new values of these
+  bool looks = false;         // at memory
+  Registers where = 0;        // the registers that say where the memory is
+  Registers from_memory = 0;  // the register that has what was read
+  Registers changes = 0;      // the registers with newly computed values
 };
 
 class LoopDecoder {
@@ -57,7 +59,7 @@ class LoopDecoder {
   static Registers Bit(unsigned reg) { return Registers{1} << reg; }
   static LoopStep Harmless(bool is_known) { return {.is_known = is_known}; }
 
-  // Its operands: a register, and a register or memory.
+  // Reads the instruction's operands: a register, and a register or memory.
   void ModRm() {
     const std::uint8_t mod_rm = Next();
     mod_ = mod_rm >> 6;
@@ -89,7 +91,8 @@ class LoopDecoder {
     step.changes |= Bit(reg_);
     return step;
   }
-  // Changes what is written to memory in other forms.
+  // Changes a register. Other forms of the instruction write to memory, and have no place in a
+  // loop.
   LoopStep ChangesRegister() const {
     return {.is_known = mod_ == 3, .changes = mod_ == 3 ? Bit(rm_) : 0};
   }
@@ -212,9 +215,9 @@ class LoopSearch {
   // All steps on a way taken together.
   struct Way {
     bool looks = false;
-    Registers where = 0;    // said so with what they had at its begin
+    Registers where = 0;    // said where with the values that they had at the way's begin
     Registers written = 0;  // have other values since
-    Registers fresh = 0;    // have what has been read on the way, from where the same is each time
+    Registers fresh = 0;    // have values read on the way, each time from the same memory
   };
 
   static bool IsSpin(const Way& way) { return way.looks && (way.where & way.written) == 0; }
@@ -232,7 +235,7 @@ class LoopSearch {
     int tried = 0;  // of the ways that lead on from there
   };
 
-  // The next way on from there; false: there is no further one.
+  // The next way on from `from`; false: there is no further one.
   bool GoOn(Place& from, Place* next) const {
     if (!can_read_(from.at, kMostSize)) return false;
     const Instruction one = shm::Decode(from.at, from.at + kMostSize);

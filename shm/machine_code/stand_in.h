@@ -1,8 +1,8 @@
-// What stands elsewhere in memory for a read of the cycle counter and the instructions that were
-// moved with it (counter_reads.h).
+// The code that stands elsewhere in memory for a read of the cycle counter and the instructions
+// that were moved with it (counter_reads.h).
 //
 // Pure; async-signal-safe. Places are addresses of the image as it lies, or will lie, in memory:
-// what is written there may be made up in another buffer first.
+// the bytes for them may be made up in another buffer first.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace tcs::shm {
 
-// How a place is reached from another one; false if it is too far away for 32 bits.
+// The way from `from` to `target`; false if the target is too far away for 32 bits.
 inline bool RelativeTo(Code target, Code from, std::int32_t* relative) {
   const std::int64_t way = target - from;
   *relative = static_cast<std::int32_t>(way);
@@ -24,7 +24,7 @@ class CodeWriter {
   CodeWriter(std::uint8_t* out, Code place, std::size_t room)
       : out_(out), place_(place), room_(room) {}
 
-  // False once something has not had room, or was too far away.
+  // False once something has not had room, or a target was too far away.
   bool is_sound() const { return is_sound_; }
   std::size_t size() const { return n_; }
 
@@ -72,7 +72,7 @@ class CodeWriter {
   bool is_sound_ = true;
 };
 
-// Writes it, with what `write_read(writer, at)` writes in place of a read at `at`.
+// Writes the stand-in, with what `write_read(writer, at)` writes in place of a read at `at`.
 template <class WriteRead>
 void WriteStandIn(CodeWriter& writer, const Replacement& replacement, const Sought& sought,
                   const WriteRead& write_read) {
@@ -91,8 +91,8 @@ void WriteStandIn(CodeWriter& writer, const Replacement& replacement, const Soug
   if (goes_on) writer.Jump(moved.end);
 }
 
-// The bytes that lead to it. `write(place, bytes, size)` puts them where they belong; the last ones
-// make it so.
+// Writes the bytes that lead to the stand-in. `write(place, bytes, size)` puts them where they
+// belong; the last bytes make the replacement effective.
 template <class Write>
 bool LeadToStandIn(const Replacement& replacement, Code stand_in, const Write& write) {
   const Code jump_at =

@@ -12,7 +12,7 @@ namespace machine_code {
 
 inline constexpr std::ptrdiff_t kLongestUnlisted = 4096;
 
-// Between the int3 instructions that fill the way to where functions are aligned.
+// The function between the int3 instructions that fill the way to where functions are aligned.
 inline CodeRange FunctionBetweenFillers(CodeRange code, Code at) {
   constexpr std::uint8_t kFiller = 0xcc;
   Code begin = at - reinterpret_cast<std::uintptr_t>(at) % 16;
@@ -34,7 +34,7 @@ inline CodeRange FunctionBetweenFillers(CodeRange code, Code at) {
 
 }  // namespace machine_code
 
-// What has an instruction at `at`; an empty range: it is not known.
+// The function that has an instruction at `at`; an empty range: the function is not known.
 inline CodeRange FunctionWithoutEntry(CodeRange code, const UnwindTable& listed, Code at) {
   const CodeRange gap = listed.GapAround(at);
   if (!gap.IsEmpty() && gap.end - gap.begin <= machine_code::kLongestUnlisted) return gap;

@@ -15,10 +15,10 @@ using Eigen::VectorXd;
 // A row that misses by no more than this of what it is made of is right.
 constexpr double kRounding = 1e-12;
 // Rounds in which all rows that are wrong change at once; if that does not get better for so long,
-// only the first one does, which always ends (Murty).
+// only the first wrong row changes, which always ends (Murty).
 constexpr int kPatience = 5;
 
-// Which rows are held, by rounds.
+// Finds which rows are held, by rounds.
 class Holds {
  public:
   Holds(const VectorXd& bounds, std::vector<int>* at, VectorXd* hold)
@@ -56,13 +56,14 @@ class Holds {
 
   int At(Index row) const { return at_[static_cast<std::size_t>(row)]; }
 
-  // Those that are held come to rest: finds what holds them, and the speeds of the others.
+  // Rows that are held come to rest: finds the efforts that hold them, and the speeds of the other
+  // rows.
   virtual void Solve() = 0;
-  // The speed that the row's bound makes of it.
+  // The speed that the row's bound gives to the row.
   virtual double SpeedByBound(Index row) const = 0;
 
   const VectorXd& bounds_;
-  std::vector<int>& at_;  // which bound: -1, 1; 0: it is held
+  std::vector<int>& at_;  // which bound: -1, 1; 0: the row is held
   VectorXd& hold_;
   VectorXd w_;  // the speeds
 
@@ -83,7 +84,7 @@ class Holds {
   std::vector<std::pair<Index, int>> wrong_;
 };
 
-// Where it is known what each effort does.
+// For a problem in which the effect of each effort is known.
 class HoldsByEffort final : public Holds {
  public:
   HoldsByEffort(const MatrixXd& by_effort, const VectorXd& moves, const VectorXd& bounds,
@@ -113,8 +114,8 @@ class HoldsByEffort final : public Holds {
   std::vector<Index> held_;
 };
 
-// Where what moves is found by a system: those that are held leave it, so that the fewer move the
-// less there is to solve.
+// For a problem in which the motion is found by a system: rows that are held leave the system, so
+// that the fewer rows move the less there is to solve.
 class HoldsInSystem final : public Holds {
  public:
   HoldsInSystem(const MatrixXd& system, const VectorXd& impulses, const std::vector<Index>& rubbing,

@@ -1,5 +1,6 @@
-// Coulomb's friction of several joints at once: each one holds its joint with whatever that takes,
-// up to a bound, and with the bound against the motion where it slides. Pure.
+// Coulomb's friction of several joints at once: the friction of each joint holds it with whatever
+// that takes, up to a bound, and acts with the bound against the motion where the joint slides.
+// Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,10 +16,10 @@ namespace tcs {
 void FindHolds(const Eigen::MatrixXd& by_effort, const Eigen::VectorXd& moves,
                const Eigen::VectorXd& bounds, Eigen::VectorXd* hold);
 
-// The same for a step that is implicit, of whose speeds `rubbing` have friction: `system` * change
-// = `impulses` + hold, where speeds + change is 0 of those that hold less than `bounds` (impulses,
-// too). `at` says of each which bound it is thought to be at (-1, 1; 0: it is held), and afterwards
-// at which it is.
+// The same, for a step that is implicit, of whose speeds `rubbing` have friction: `system` * change
+// = `impulses` + hold, where speeds + change is 0 for the speeds whose hold is less than `bounds`
+// (impulses, too). `at` says for each speed with friction at which bound it is thought to be
+// (-1, 1; 0: it is held), and afterwards at which it is.
 void FindHeldChange(const Eigen::MatrixXd& system, const Eigen::VectorXd& impulses,
                     const std::vector<Eigen::Index>& rubbing, const Eigen::VectorXd& speeds,
                     const Eigen::VectorXd& bounds, std::vector<int>* at, Eigen::VectorXd* hold,

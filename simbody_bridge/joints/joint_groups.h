@@ -1,6 +1,6 @@
-// Which bodies of a forest push each other through their joints: those of one tree, and those whose
-// joints mimic each other. What is fixed to the world parts trees: the fingers of a hand that is
-// held are apart.
+// The bodies of a forest that push each other through their joints: bodies of one tree, and bodies
+// whose joints mimic each other. A link that is fixed to the world parts trees: the fingers of a
+// hand that is held are apart.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ std::vector<std::vector<std::size_t>> JointGroupsOf(const Forest& forest);
 // Whether a joint of the forest has damping or friction of its own.
 bool HasDampingOrFriction(const Forest& forest);
 
-// Those of a body's speeds.
+// The damping and the friction of a body's speeds.
 double DampingOf(const Forest& forest, std::size_t body);
 double FrictionOf(const Forest& forest, std::size_t body);
 

@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// What comes to rest within this time rests at once: steps are no shorter.
+// A joint that comes to rest within this time rests at once: steps are no shorter.
 constexpr double kInstantS = 1e-9;
 // A joint that has to go back as slowly as this has come to rest.
 constexpr double kRestRadps = 1e-10;
@@ -25,8 +25,8 @@ constexpr double kLastPart = 0.01;
 // The shortest part of a step that ends because a joint breaks away, or turns round at once.
 constexpr double kLeastPart = 1.0 / 16;
 
-// Dampers that take less than this of a speed in a step, each alone and all together: what Kutta's
-// method makes of that is off by 1e-8 and 4e-6 of the speed.
+// Dampers that take less than this of a speed in a step, each alone and all together: Kutta's
+// method is off by 1e-8 and 4e-6 of the speed for them.
 constexpr double kSlow = 0.02, kSlowTogether = 0.1;
 
 MatrixXd InverseOf(const MatrixXd& matrix) {
@@ -35,7 +35,7 @@ MatrixXd InverseOf(const MatrixXd& matrix) {
 
 }  // namespace
 
-// In the speeds that mimic no other.
+// The part in the speeds that mimic no other.
 struct JointPart::Reduced {
   MatrixXd mass, by_mass;
   VectorXd speed, force;  // the force without friction
@@ -110,8 +110,8 @@ void JointPart::FindSlips(Reduced* reduced) {
   }
 }
 
-// Of those that come to rest within an instant; the others then have the speeds that the blow
-// leaves them. Whether there are any.
+// Stops the joints that come to rest within an instant; the other joints then have the speeds that
+// the blow leaves them. Returns whether there are any such joints.
 bool JointPart::Arrest(const Start& start, Reduced* reduced, Start* arrested) const {
   const VectorXd rates = reduced->by_mass * reduced->force;
   const VectorXd damping =
@@ -122,7 +122,7 @@ bool JointPart::Arrest(const Start& start, Reduced* reduced, Start* arrested) co
     const double sign = SignOf(column), speed = reduced->speed[column] * sign;
     bool rests = bounds_[column] > 0 && reduced->speed[column] == 0;
     if (speed > 0) {
-      // As if the others stood still meanwhile.
+      // As if the other joints stood still meanwhile.
       const double mass = 1 / reduced->by_mass(column, column);
       const double against = -sign * rates[column] * mass - damping[column] * speed;
       const double decay = damping[column] / mass;
@@ -190,7 +190,7 @@ void JointPart::Begin(const Start& start) {
 }
 
 // Joints that mimic others move as these do: the mass is that of both. Dampers that are slow beside
-// the step need no closed form, whose cost is the cube of the number of those that have one.
+// the step need no closed form, whose cost is the cube of the number of dampers that have one.
 void JointPart::Linearise(const Start& from) {
   ServoStart& start = motion_.start();
   MatrixXd by_mass = MatrixXd::Zero(reduction_.rows(), reduction_.rows());
@@ -204,7 +204,7 @@ void JointPart::Linearise(const Start& from) {
   if (start.has_springs) {
     start.stiffness = by_mass * from.by_coordinate.asDiagonal();
   } else {
-    // The sum of what each takes is no less than what the fastest motion of all loses.
+    // The sum of what each damper takes is no less than what the fastest motion of all loses.
     const VectorXd takes = from.longest_s * by_mass.diagonal().cwiseProduct(dampers);
     const auto is_slow = (takes.array() < kSlow).eval();
     if (is_slow.select(takes.array(), 0.0).sum() < kSlowTogether) {
@@ -288,9 +288,9 @@ double JointPart::SpeedAfter(Index column, double seconds, double* rate) {
   return motion.speed[leader];
 }
 
-// What slides comes to rest before `until_s`: by Newton's method, and where that leads out of what
-// is known, by halves, at first of the logarithm. Of a joint that begins at rest and goes the other
-// way at once, that is at once; it takes a part of the step then.
+// The time at which a sliding joint comes to rest before `until_s`: by Newton's method, and where
+// that leads out of the known bracket, by halves, at first of the logarithm. A joint that begins at
+// rest and goes the other way at once comes to rest at once; the result is a part of the step then.
 double JointPart::Crossing(Index column, double until_s) {
   constexpr int kMostRounds = 60;
   const double sign = SignOf(column);
@@ -316,7 +316,8 @@ double JointPart::Crossing(Index column, double until_s) {
   return start > 0 ? high : std::max(high, kLeastPart * h_);
 }
 
-// By the parabola through what is known of each joint that is held.
+// The time of the first breakaway, by the parabola through the known excesses of each joint that is
+// held.
 double JointPart::FirstBreakaway() const {
   constexpr double kRounding = 1e-9;
   constexpr int kLooks = 64;

@@ -1,9 +1,9 @@
 // Joints that push each other, in a step of their own: springs, dampers and friction in closed form
 // (servo_motion.h). In the course of a step each joint that has friction slides one way, with a
-// constant force against it, or stands still and is held. A step ends where that changes.
+// constant force against it, or stands still and is held. A step ends where one of these changes.
 //
-// What else acts comes from an engine, which gives the mass matrix and the accelerations without
-// friction where it is asked to.
+// Everything else that acts comes from an engine, which gives the mass matrix and the accelerations
+// without friction where it is asked to.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,14 +18,14 @@ namespace tcs {
 
 // A step that still ends too late for what happens first is tried again no more often than this.
 inline constexpr int kMostEventTries = 8;
-// A step of a set length has no more pieces than this; what happens in the last one is passed over.
+// A step of a set length has no more pieces than this; an event in the last piece is passed over.
 inline constexpr int kMostStepPieces = 1000;
 
 class JointPart {
  public:
-  // Of the speeds of these places among all. They are `reduction` times those of joints that mimic
-  // no other; `keeps_mimics` says that the engine's accelerations are, too. `friction` is of each
-  // speed.
+  // A part with the speeds of these places among all speeds. The part's speeds are `reduction`
+  // times those of joints that mimic no other; `keeps_mimics` says that the engine's accelerations
+  // are, too. `friction` is of each speed.
   JointPart(std::vector<std::size_t> places, Eigen::MatrixXd reduction, Eigen::VectorXd friction,
             bool keeps_mimics);
 
@@ -35,18 +35,20 @@ class JointPart {
   // Whether a step needs the masses of its middle and its end, too.
   bool needs_masses() const { return needs_masses_; }
 
-  // Of all speeds, those of this part; and back.
+  // Takes the part's speeds from all speeds; and writes them back.
   Eigen::VectorXd Gather(const double* all) const;
   void Scatter(const Eigen::VectorXd& own, double* all) const;
   void Scatter(const JointMotion& own, double* way, double* speed) const;
-  // Of the mass matrix of all speeds, its own; the second one only if a step needs that.
+  // The part's own mass matrix, of the mass matrix of all speeds; NeededMassIn gives it only if a
+  // step needs it.
   Eigen::MatrixXd MassIn(const Eigen::MatrixXd& all) const { return all(places_, places_); }
   Eigen::MatrixXd NeededMassIn(const Eigen::MatrixXd& all) const {
     return needs_masses_ ? MassIn(all) : Eigen::MatrixXd();
   }
 
-  // What a step begins with, of each speed of the part. The rates are without friction, but with
-  // dampers and springs, which fall with each speed and each coordinate so much.
+  // The values that a step begins with, of each speed of the part. The rates are without friction,
+  // but with dampers and springs, whose efforts fall by `by_speed` with each speed and by
+  // `by_coordinate` with each coordinate.
   struct Start {
     Eigen::MatrixXd mass;
     Eigen::VectorXd speed, rate, by_speed, by_coordinate;
@@ -57,14 +59,14 @@ class JointPart {
   const JointMotion& Middle(double h);
   const JointMotion& End(const Eigen::MatrixXd& middle_mass, const Eigen::VectorXd& middle_rate);
   const JointMotion& Arrive(const Eigen::MatrixXd& end_mass, const Eigen::VectorXd& end_rate);
-  // When the first joint comes to rest in the step that was tried, or one that is held breaks away;
-  // else its length.
+  // The time at which the first joint comes to rest in the step that was tried, or a joint that is
+  // held breaks away; else the step's length.
   double FirstEvent();
-  // Makes those rest, of all speeds, that have come to rest at its end.
+  // Sets the speeds to 0, among all speeds, of the joints that have come to rest at the step's end.
   void BringToRest(double* all) const;
 
   const ServoMotion& motion() const { return motion_; }
-  // With friction, and as those that mimic others have to, in this step.
+  // The rates with friction, and as joints that mimic others have to go, in this step.
   Eigen::VectorXd Rate(const Eigen::MatrixXd& mass, const Eigen::VectorXd& rate) const;
 
  private:
@@ -96,9 +98,10 @@ class JointPart {
   ServoPush push_;
   std::vector<Slip> slips_;  // of each column
   Eigen::MatrixXd moving_;   // the columns that are not held
-  Eigen::VectorXd sliding_;  // what friction gives along each speed that is not held
+  Eigen::VectorXd sliding_;  // friction along each speed that is not held
   double h_ = 0;
-  // By how much more than is there each column that is held had to be held.
+  // The excess of the effort that each held column needs over the friction that it has, as a part
+  // of that friction.
   std::array<Eigen::VectorXd, 3> excess_;  // at the start, in the middle, at the end
   std::vector<double> rest_at_s_;          // of each column
 };

@@ -12,12 +12,12 @@ namespace {
 
 // How far behind a limit the next step begins.
 constexpr double kBehind = 1e-5;
-// As near to it a step may end where it was to end behind it.
+// A step may end as near as this to a limit where it was to end behind the limit.
 constexpr double kNear = 1e-4;
 constexpr double kNanosecond = 1e-9;
 constexpr double kNoCrossing = std::numeric_limits<double>::infinity();
 
-// The first whole nanosecond behind.
+// The first whole nanosecond behind `seconds`.
 double After(double seconds) { return WholeNanoseconds(seconds + kNanosecond); }
 
 // Whether a ratio has crossed a limit, from `start` to `end`, both less the limit.
@@ -48,8 +48,8 @@ bool LimitCrossings::HasCrossed(const std::vector<double>& ratios) const {
   return false;
 }
 
-// The first one of those between `before` and `behind`: by the line through the last two points
-// where that leads between these, else by that through themselves. Never if there is none.
+// The first crossing between `before` and `behind`: by the line through the last two points where
+// that leads between these, else by the line through `before` and `behind`. Never if there is none.
 double LimitCrossings::Estimate(const Point& before, const Point& behind, const Point& last,
                                 const Point& latest) {
   double first_s = kNoCrossing;
@@ -73,7 +73,7 @@ double LimitCrossings::Estimate(const Point& before, const Point& behind, const 
   return first_s;
 }
 
-// By the secant method, and by halves where that makes little of it: from afar by halves of the
+// Predicts by the secant method, and by halves where that gains little: from afar by halves of the
 // logarithm, as a ratio may have grown with any power of the time.
 double LimitCrossings::Predict(double h, const FindRatios& find) {
   constexpr int kMostRounds = 40;
@@ -128,7 +128,7 @@ double LimitCrossings::First(double h, const std::vector<double>& ratios) {
     if (tried_.h > h) slopes_[i] = (tried_.ratios[i] - ratios[i]) / (tried_.h - h);
     for (const double limit : {-1.0, 1.0}) {
       const double start = start_.ratios[i] - limit, end = ratios[i] - limit;
-      // What ends as little behind as it is to end is not what makes a step fail.
+      // A ratio that ends as little behind its limit as it is to end does not make a step fail.
       if (!Crosses(start, end) || std::abs(end) < 2 * kBehind) continue;
       const double to = limit + (end > 0 ? kBehind : -kBehind);
       double at_s = OnLine(h, ratios[i], (end - start) / h, to);

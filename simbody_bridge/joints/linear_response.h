@@ -21,15 +21,16 @@ struct DampedModes {
   Eigen::MatrixXd onto, from;
 };
 
-// Of the speeds that have them: `by_mass` is the inverse of the mass matrix, `dampers` those of
-// each speed, at least 0.
+// Finds the modes of the speeds that have dampers: `by_mass` is the inverse of the mass matrix,
+// `dampers` are the dampers of each speed, at least 0.
 void FindModes(const Eigen::MatrixXd& by_mass, const Eigen::VectorXd& dampers, DampedModes* modes);
 
-// To a push that takes `seconds`.
+// The response to a push that takes `seconds`.
 struct LinearResponse {
   double seconds = 0;
   std::array<Eigen::MatrixXd, 4> b;
-  // Without springs: B_k is 1 / (k+1)! and what each mode adds. Whose they are outlives this.
+  // Without springs: B_k is 1 / (k+1)! and what each mode adds. The owner of the modes outlives
+  // this.
   const DampedModes* modes = nullptr;
   std::array<Eigen::VectorXd, 4> of_mode;
 
@@ -39,11 +40,11 @@ struct LinearResponse {
                         const Eigen::VectorXd& f2) const;
 };
 
-// The same for dampers alone, however many speeds there are, in their number squared.
+// The response of dampers alone, however many speeds there are, in time of their number squared.
 void FindResponse(const DampedModes& modes, double seconds, LinearResponse* response);
 
-// To a push of `seconds` > 0, and to one half as long unless `half` is null. NaN where numbers are
-// too large.
+// The response to a push of `seconds` > 0, and to a push half as long unless `half` is null. NaN
+// where numbers are too large.
 void FindResponse(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& damping, double seconds,
                   LinearResponse* whole, LinearResponse* half);
 

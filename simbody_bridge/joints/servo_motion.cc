@@ -5,7 +5,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-// From the start's rate on, pushed by f1 and f2 on top of it.
+// The motion from the start's rate on, pushed by f1 and f2 on top of it.
 JointMotion Answer(const ServoStart& start, const LinearResponse& response, const VectorXd& f1,
                    const VectorXd& f2) {
   return {response.seconds * start.speed + response.Way(start.rate, f1, f2),
@@ -36,8 +36,8 @@ double RateAlong(const ServoStart& start, const ServoPush& push, double after_s,
   return rate;
 }
 
-// The springs push back as much as the joints go on as fast as they are; what they do on top of
-// that is in the response.
+// `drift_` is the springs' push where the joints go on as fast as they are; the response has the
+// rest of the springs' push.
 const JointMotion& ServoMotion::Middle(double h) {
   none_.setZero(start_.speed.size());
   if (start_.has_springs) {
@@ -61,10 +61,10 @@ const JointMotion& ServoMotion::End(const VectorXd& middle_rate) {
   return at_end_;
 }
 
-// What remains grows as the parabola through its three values, of which the first is 0. Half of how
-// that differs from the straight line to the last one is the error: of speeds without springs and
-// dampers it is that of the midpoint rule. Where joints are stiff, only the push at the end counts,
-// and the midpoint rule's own, a constant, is wrong there.
+// The remainder grows as the parabola through its three values, of which the first is 0. Half of
+// the parabola's difference from the straight line to the last value is the error: for speeds
+// without springs and dampers it is that of the midpoint rule. Where joints are stiff, only the
+// push at the end counts, and the midpoint rule's own push, a constant, is wrong there.
 const JointMotion& ServoMotion::Arrive(const VectorXd& end_rate) {
   end_ = Remainder(end_rate, at_end_);
   const VectorXd f1 = 4 * middle_ - end_, f2 = 2 * end_ - 4 * middle_;
@@ -79,7 +79,7 @@ ServoPush ServoMotion::Push() const {
   return {whole_.seconds, drift_ + 4 * middle_ - end_, 2 * end_ - 4 * middle_};
 }
 
-// The value in the middle is off by what the one at the end is, divided by four.
+// The value in the middle is off by a fourth of what the value at the end is off by.
 ServoPush ServoMotion::PushUntil(const VectorXd& rate) const {
   const VectorXd last = Remainder(rate, arrived_);
   const VectorXd middle = middle_ + (end_ - last) / 4;

@@ -30,7 +30,7 @@ class SpringResponse {
     minus_damping_.topLeftCorner(used_, used_) = -seconds * damping;
   }
 
-  // Writes what it finds of the time, and of half of it unless `half` is null: NaN where numbers
+  // Writes the response over the time, and over half of it unless `half` is null: NaN where numbers
   // are too large.
   void Find(LinearResponse* whole, LinearResponse* half) {
     double stiff = NormOf(minus_stiffness_), damped = NormOf(minus_damping_);

@@ -17,8 +17,8 @@ namespace {
 
 std::string library_path;
 
-// A variable of the environment has another value for a while. What it then has once more is what
-// clients inherit.
+// A variable of the environment has another value for a while. Clients inherit the value that it
+// then has once more.
 class Meanwhile {
  public:
   Meanwhile(const char* name, const char* value) : name_(name) {

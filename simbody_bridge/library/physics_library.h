@@ -8,8 +8,8 @@
 
 namespace tcs {
 
-// Where libtcs_physics.so is. Before the first MakeDynamics(), which throws DynamicsError if it
-// cannot be loaded. Not thread-safe; nor is MakeDynamics().
+// Sets where libtcs_physics.so is. Called before the first MakeDynamics(), which throws
+// DynamicsError if the library cannot be loaded. Not thread-safe; nor is MakeDynamics().
 void SetPhysicsLibrary(std::string path);
 
 }  // namespace tcs

@@ -15,7 +15,7 @@ using Vector = std::array<double, 3>;
 
 constexpr double kFlat = 1e-6;  // of the points' extent
 
-// The hull of the points that have been added so far; each one that is outside replaces the
+// The hull of the points that have been added so far; each point that is outside replaces the
 // triangles that it sees by a cone over their outline.
 class Builder {
  public:

@@ -13,7 +13,7 @@ struct ConvexHull {
   std::vector<std::array<int, 3>> triangles;  // counterclockwise as seen from outside
 };
 
-// Whether HullOf finds one. Takes time in the number of points.
+// Whether HullOf finds a hull. Takes time in the number of points.
 bool SpansVolume(std::span<const std::array<double, 3>> points);
 
 // None: the points lie in a plane, within a millionth of their extent. Points that are as near to

@@ -11,11 +11,11 @@
 
 namespace tcs {
 
-// Points into the models and fixtures that it was made of, which outlive it.
+// A forest points into the models and fixtures that it was made of, which outlive it.
 struct ForestJoint {
   const Joint* joint = nullptr;
-  int body = kWorldBody;  // that it moves; of a fixed one kWorldBody
-  int leader = -1;        // that it mimics
+  int body = kWorldBody;  // moved by the joint; kWorldBody: a fixed joint
+  int leader = -1;        // the joint that it mimics
 };
 
 struct ForestShape {
@@ -23,8 +23,8 @@ struct ForestShape {
   int body = kWorldBody;
   Pose pose;       // in the body's frame, or in the world
   int model = -1;  // -1: a fixture of the world
-  // Whose it is: a link, as Dynamics numbers those of all models, or one of the world's fixtures,
-  // by index; the other one is -1.
+  // The owner of the shape: a link, as Dynamics numbers the links of all models, or one of the
+  // world's fixtures, by index; the other one is -1.
   int link = -1, fixture = -1;
 };
 
@@ -39,11 +39,12 @@ struct Forest {
   std::set<std::pair<int, int>> ignored_pairs;
 };
 
-// Of the models of these indices among all, which have passed CheckModel.
+// The forest of the models of these indices among all, which have passed CheckModel.
 Forest MakeForest(std::span<const RobotModel> models, std::span<const int> indices,
                   std::span<const Shape> fixtures);
 
-// More that do not move, whose links are numbered as Dynamics does; they outlive the forest.
+// Adds shapes that do not move, whose links are numbered as Dynamics does; the shapes outlive the
+// forest.
 void AddFixtures(std::span<const StaticShape> shapes, Forest* forest);
 
 // Whether two shapes can ever be in contact: they are of different bodies, one of which moves, that

@@ -1,4 +1,4 @@
-// What a program wants of a joint, and the drive that this becomes.
+// A program's goal for a joint, and the drive that the goal becomes.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@ enum class JointQuantity { kPosition, kVelocity, kEffort };
 inline constexpr std::array<std::string_view, 3> kJointQuantities = {"position", "velocity",
                                                                      "effort"};
 
-// rad, rad/s and N m, or m, m/s and N; finite. What is not wanted is not there.
+// rad, rad/s and N m, or m, m/s and N; finite. A quantity that is not wanted is not there.
 struct JointGoal {
-  std::size_t joint = 0;  // among those that the program drives
+  std::size_t joint = 0;  // among the joints that the program drives
   std::optional<double> position{}, velocity{}, effort{};
 
   std::optional<double>& Of(JointQuantity quantity) {
@@ -41,8 +41,8 @@ struct JointGains {
   bool operator==(const JointGains&) const = default;
 };
 
-// A servo for a position or a velocity, and the effort beside it. Who wants a position and no
-// velocity wants to stand there.
+// A servo for a position or a velocity, and the effort beside it. A goal with a position and no
+// velocity means to stand there.
 inline JointDrive ToDrive(const JointGoal& goal, const JointGains& gains) {
   JointDrive drive;
   drive.effort = goal.effort.value_or(0);

@@ -24,10 +24,10 @@ struct JointTrajectory {
   VirtualDuration length() const { return points.back().at; }
 };
 
-// What is wrong with the trajectory, as the rest of a sentence about it; empty: nothing.
+// The mistake in the trajectory, as the rest of a sentence about it; empty: none.
 std::string WhatIsWrongWith(const JointTrajectory& trajectory);
 
-// Makes it one of the other joints alone. `number` counts them as `joints` does.
+// Makes `trajectory` one of the other joints alone. `number` counts joints as `joints` does.
 void LeaveOut(std::size_t number, JointTrajectory* trajectory);
 
 struct JointSetpoint {
@@ -35,8 +35,8 @@ struct JointSetpoint {
 };
 
 // Where the trajectory's joint of that number is to be `after` its start, if it was at `from` then.
-// Between two points with velocities it is a cubic through both (the start has the velocity 0),
-// else a straight line. From the last point on it is to stay there.
+// Between two points with velocities the path is a cubic through both (the start has the velocity
+// 0), else a straight line. From the last point on the joint is to stay there.
 JointSetpoint SetpointAt(const JointTrajectory& trajectory, std::size_t joint, double from,
                          VirtualDuration after);
 

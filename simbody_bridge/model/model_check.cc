@@ -39,7 +39,7 @@ std::optional<std::string> CheckInertial(const Inertial& inertial) {
   return {};
 }
 
-// Of a body: links that are fixed to each other only add to it.
+// Checks the inertia of a body: links that are fixed to each other only add to it.
 std::optional<std::string> CheckInertia(const Matrix3& inertia_kgm2) {
   const std::array<double, 3> moments = PrincipalAxesOf(inertia_kgm2).moments;
   const auto text =
@@ -288,10 +288,11 @@ Fault CheckTree(const RobotModel& model, const std::vector<int>& joint_above) {
   return {};
 }
 
-// What moves has mass: each link that a joint moves, or one of those that are fixed to it.
+// Everything that moves has mass: each link that a joint moves, or one of the links that are fixed
+// to it.
 Fault CheckMasses(const RobotModel& model, const std::vector<int>& joint_above) {
   const std::size_t count = model.links.size();
-  // The topmost link of those that are fixed to each other; found once for each link.
+  // The topmost link of the links that are fixed to each other; found once for each link.
   std::vector<int> top(count, -1);
   std::vector<std::size_t> way;
   const auto top_of = [&](std::size_t link) {
@@ -327,7 +328,7 @@ Fault CheckMasses(const RobotModel& model, const std::vector<int>& joint_above) 
   return {};
 }
 
-// Of each body, named by the first of its links that has mass.
+// Checks the inertia of each body, which is named by the first of its links that has mass.
 Fault CheckInertias(const RobotModel& model) {
   const RigidTree tree = MakeTree(model);
   std::vector<char> is_named(tree.bodies.size(), 0);

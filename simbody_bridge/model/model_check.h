@@ -1,4 +1,5 @@
-// Says what no body can have, and what is no tree, before an engine sees a model. Pure.
+// Finds values that no body can have, and joints that are no tree, before an engine sees a model.
+// Pure.
 #pragma once
 
 #include <array>
@@ -12,16 +13,16 @@ namespace tcs {
 
 struct ModelFault {
   std::string what;  // one sentence that names the link, the joint or the shape
-  int link = -1;     // what it is about, for whoever knows the line: one of the two, or neither
+  int link = -1;     // the fault's link or joint, or neither, for callers that know its line
   int joint = -1;
 };
 
-// The first fault of a model that there is; none: it can be built. It takes time that grows as the
+// The first fault of a model; none: the model can be built. The check takes time that grows as the
 // model does.
 std::optional<ModelFault> CheckModel(const RobotModel& model);
 
-// What is wrong with a shape, without its name ("the radius must be positive and finite, but is -1
-// m"). Planes only of the world.
+// The fault of a shape ("the radius must be positive and finite, but is -1 m"), without the shape's
+// name. Only the world may have planes.
 std::optional<std::string> CheckShape(const Shape& shape, bool is_of_world);
 
 // The moments about the principal axes, rising. `inertial` is finite.

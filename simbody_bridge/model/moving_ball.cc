@@ -11,7 +11,7 @@ namespace {
 
 double Norm(const std::array<double, 3>& v) { return std::sqrt(Dot(v, v)); }
 
-// Around the origin of the shape's frame.
+// The radius of a ball around the origin of the shape's frame.
 double ReachOf(const Geometry& geometry) {
   if (const auto* box = std::get_if<BoxShape>(&geometry)) return Norm(box->size_m) / 2;
   if (const auto* sphere = std::get_if<SphereShape>(&geometry)) return sphere->radius_m;

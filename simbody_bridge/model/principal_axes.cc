@@ -11,7 +11,7 @@ namespace tcs {
 PrincipalAxes PrincipalAxesOf(const std::array<std::array<double, 3>, 3>& inertia) {
   auto m = inertia;
   std::array<std::array<double, 3>, 3> axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // in rows
-  constexpr int kSweeps = 12;  // it converges quadratically: five or six do
+  constexpr int kSweeps = 12;  // rotations converge quadratically: five or six do
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (const auto& [p, q] : {std::pair<std::size_t, std::size_t>{0, 1}, {0, 2}, {1, 2}}) {
       if (m[p][q] == 0) continue;

@@ -36,7 +36,7 @@ Matrix3 Turned(const Inertial& inertial, const std::array<double, 4>& q) {
   return turned;
 }
 
-// What a mass at `offset` from the origin adds to an inertia about it.
+// Adds a mass at `offset` from the origin to an inertia about the origin.
 void AddPointMass(double mass_kg, const Vector& offset, Matrix3* inertia) {
   const double square = Dot(offset, offset);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -65,7 +65,7 @@ void AddMass(const Inertial& inertial, const Pose& pose, TreeBody* body) {
   body->center_m = common;
 }
 
-// The same is added to all three moments.
+// Adds the same amount to all three moments.
 void MakePossible(Matrix3* inertia) {
   constexpr double kLeast = 1e-15, kSlack = 1e-9;
   const std::array<double, 3> moments = PrincipalAxesOf(*inertia).moments;
@@ -122,7 +122,8 @@ TreeBody BodyOf(const RobotModel& model, int index, const TreeLink& parent) {
   return body;
 }
 
-// The root first, then its children and theirs; of one link in the order of the model's joints.
+// The joints of the root first, then those of its children and of theirs; the joints of one link in
+// the order of the model's joints.
 std::vector<int> JointsFromRoot(const RobotModel& model) {
   std::vector<std::vector<int>> below(model.links.size());
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
@@ -131,7 +132,7 @@ std::vector<int> JointsFromRoot(const RobotModel& model) {
   std::vector<int> order = below[static_cast<std::size_t>(model.root)];
   for (std::size_t next = 0; next < order.size(); ++next) {
     const int child = model.joints[static_cast<std::size_t>(order[next])].child;
-    // One by one: of insert() GCC 14 believes that it writes beyond the end.
+    // Joints are added one by one: GCC 14 believes that insert() writes beyond the end.
     for (const int joint : below[static_cast<std::size_t>(child)]) order.push_back(joint);
   }
   return order;

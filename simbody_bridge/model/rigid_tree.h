@@ -16,10 +16,10 @@ inline constexpr int kWorldBody = -1;  // as a body
 
 struct TreeBody {
   int parent = kWorldBody;  // or another body, that comes before this one
-  int joint = -1;           // of the model; -1: what a free base moves by
+  int joint = -1;           // of the model; -1: the joint of a free base
   JointKind kind = JointKind::kFloating;
   // The frame of the joint in the parent's frame, or in the world; where all coordinates are 0 it
-  // is the body's own, which is that of the joint's child.
+  // is the body's own frame, which is that of the joint's child.
   Pose origin;
   std::array<double, 3> axis{};  // of unit length; of a floating joint none
   double mass_kg = 0;
@@ -42,15 +42,15 @@ struct RigidTree {
 
 // A shape of a link that is fixed to the world.
 struct StaticShape {
-  Shape shape;   // its pose in the world's frame
-  int link = 0;  // whose it is
+  Shape shape;   // with its pose in the world's frame
+  int link = 0;  // the shape's owner
 };
 
 // `model` has passed CheckModel.
 RigidTree MakeTree(const RobotModel& model);
 
-// For engines: flat bodies, and sums of what CAD has rounded, are just beyond what a body can have,
-// or what an engine takes for that (MuJoCo no moment below 1e-15 kg m^2).
+// Mends the tree for engines: flat bodies, and sums of what CAD has rounded, are just beyond what a
+// body can have, or what an engine takes for that (MuJoCo no moment below 1e-15 kg m^2).
 void MakePossible(RigidTree* tree);
 
 // The shortest way from the z axis to `axis`, of unit length.

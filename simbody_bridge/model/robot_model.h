@@ -2,9 +2,9 @@
 // are read into and from which each engine builds its system. Plain data, owned by whoever has it;
 // nothing here is computed, and nothing knows an engine.
 //
-// Frames and units (REP-103): SI units and radians, right-handed, z up. What a link has (its mass,
-// its shapes) is in the link's frame; a joint's frame is the frame of its child where all of the
-// joint's coordinates are 0. Effort is N m about an axis and N along one.
+// Frames and units (REP-103): SI units and radians, right-handed, z up. A link's mass and shapes
+// are in the link's frame; a joint's frame is the frame of its child where all of the joint's
+// coordinates are 0. Effort is N m about an axis and N along one.
 //
 // Links and joints refer to each other by index. CheckModel (model_check.h) says what is wrong with
 // a model; everything else takes models that it has passed.
@@ -38,10 +38,10 @@ struct Inertial {
 
 struct Link {
   std::string name;
-  // None: a frame without mass. It may be that only where it does not move or is fixed to a link
-  // that has mass.
+  // None: the link is a frame without mass. A link may be that only where it does not move or is
+  // fixed to a link that has mass.
   std::optional<Inertial> inertial;
-  std::vector<Shape> shapes;  // that collide
+  std::vector<Shape> shapes;  // for collisions
 };
 
 // A joint's coordinates and speeds, in this order:
@@ -64,13 +64,14 @@ inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 struct JointLimits {
   double lower = -kNoLimit;  // stops that the joint cannot pass, inelastic
   double upper = kNoLimit;
-  double effort = kNoLimit;    // what drives the joint gives no more
+  double effort = kNoLimit;    // the joint's drive gives no more
   double velocity = kNoLimit;  // for actuators and controllers: the physics do not enforce it
 };
 
-// A joint whose coordinate follows another one's: multiplier * that + offset. Both have one.
+// A joint whose coordinate follows another one's: multiplier * that + offset. Both joints have one
+// coordinate.
 struct Mimic {
-  int joint = -1;  // index into RobotModel::joints; not itself one that mimics
+  int joint = -1;  // index into RobotModel::joints; not a joint that mimics another
   double multiplier = 1;
   double offset = 0;
 };
@@ -88,7 +89,7 @@ struct Joint {
   double damping = 0;
   double friction = 0;
   std::optional<Mimic> mimic;
-  // With this time constant what drives the joint goes over from a command to the next.
+  // The time constant with which the joint's drive goes over from a command to the next.
   VirtualDuration drive_lag{};
   // At the start; empty: all 0, and no rotation. A start beyond the limits is an error. A joint
   // that mimics has neither: it starts where its mimic says.
@@ -97,7 +98,8 @@ struct Joint {
 };
 
 // A propeller on a link, which is not a body of its own: at the speed w it pushes with thrust w^2
-// along the z of its frame, and turns its link with drag w^2 about that, against its own way round.
+// along the z of its frame, and turns its link with drag w^2 about that axis, against its own way
+// round.
 struct Rotor {
   std::string name;
   int link = -1;  // index into RobotModel::links
@@ -105,30 +107,30 @@ struct Rotor {
   double thrust_ns2 = 0;
   double drag_nms2 = 0;
   bool is_clockwise = false;        // seen from where the thrust points to
-  VirtualDuration time_constant{};  // of its speed, which follows what is commanded
-  double most_radps = kNoLimit;     // it turns no faster, nor backwards
+  VirtualDuration time_constant{};  // of its speed, which follows the command
+  double most_radps = kNoLimit;     // the rotor turns no faster, nor backwards
 };
 
 struct RobotModel {
   std::string name;
   std::vector<Link> links;
-  // Each link but the root is the child of exactly one.
+  // Each link but the root is the child of exactly one joint.
   std::vector<Joint> joints;
   std::vector<Rotor> rotors;
   // The root: fixed to the world, or free to move in it.
   int root = 0;
   bool has_fixed_base = false;
-  // Of the root's frame in the world, at the start; for good if the base is fixed.
+  // The pose of the root's frame in the world, at the start; for good if the base is fixed.
   Pose at;
   std::array<double, 3> linear_velocity_mps{};  // of the root's origin; of a free base only
   std::array<double, 3> angular_velocity_radps{};
-  // Links of one model pass through each other, unless this says that they collide; those that a
-  // joint joins never do.
+  // Links of one model pass through each other, unless this says that they collide; links that a
+  // joint joins never collide.
   bool has_self_collision = false;
   // Pairs of links, by index, the lower one first, that pass through each other all the same.
   std::vector<std::pair<int, int>> ignored_pairs;
-  // Whether it collides with other models that do. If not it touches the world's fixtures alone,
-  // and is integrated by itself whoever is near.
+  // Whether the model collides with other models that collide with models. If not, the model
+  // touches the world's fixtures alone, and is integrated by itself, whichever model is near.
   bool touches_models = true;
 };
 

@@ -1,4 +1,4 @@
-// What bodies touch each other with.
+// The shapes with which bodies touch each other.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace tcs {
 
-// Each is centred on the origin of its own frame.
+// Each shape is centred on the origin of its own frame.
 struct BoxShape {
   std::array<double, 3> size_m{1, 1, 1};  // whole edges, along x, y, z
 };
@@ -29,7 +29,7 @@ struct CapsuleShape {
   double radius_m = 0.5;
   double length_m = 1;  // of the cylinder, without the balls
 };
-// All that is below z = 0, without an end. Only of the world: no body is as large.
+// Everything below z = 0, without an end. Only the world has planes: no body is as large.
 struct PlaneShape {};
 
 struct Mesh {
@@ -38,8 +38,8 @@ struct Mesh {
   // Vertices by index, counterclockwise as seen from outside.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
-// Collides as the convex hull of its vertices. Already scaled; shared by all that have the same one
-// (never null).
+// Collides as the convex hull of its vertices. Already scaled; shared by all shapes that have the
+// same mesh (never null).
 struct MeshShape {
   std::shared_ptr<const Mesh> mesh;
 };

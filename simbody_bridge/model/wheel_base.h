@@ -30,7 +30,8 @@ inline WheelSpeeds WheelSpeedsOf(const WheelBase& base, const PlanarSpeed& speed
           (speed.forward_mps + sideways_mps) / base.radius_m};
 }
 
-// None turns faster than `most_radps`, and the robot goes along the same arc.
+// The same speeds, but no wheel turns faster than `most_radps`, and the robot goes along the same
+// arc.
 inline WheelSpeeds Limited(const WheelSpeeds& speeds, double most_radps) {
   const double fastest = std::max(std::abs(speeds.left_radps), std::abs(speeds.right_radps));
   if (fastest <= most_radps) return speeds;

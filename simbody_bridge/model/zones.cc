@@ -6,16 +6,17 @@
 namespace tcs {
 namespace {
 
-// How far somebody who is hit, or pushed harder than is trusted, may be past its zone before it is
-// noticed: a step of 1 ms at 50 m/s.
+// How far a model that is hit, or pushed harder than is trusted, may be past its zone before that
+// is noticed: a step of 1 ms at 50 m/s.
 constexpr double kMarginM = 0.05;
-// So much farther apart those have to be who part than those who stay apart.
+// Models that part have to be so much farther apart than models that stay apart.
 constexpr double kPartingM = 0.1;
-// Beside what it needs, of one that is in a group.
+// The room of a model in a group, beside the room that it needs.
 constexpr double kRoomInGroupM = 0.1;
 constexpr double kMostRoomM = 1e6;
 
-// Of disjoint sets: each one's parent, a root is its own.
+// The root of `i` in disjoint sets: `parents` has each element's parent, and a root is its own
+// parent.
 std::size_t RootOf(std::vector<std::size_t>& parents, std::size_t i) {
   while (parents[i] != i) {
     parents[i] = parents[parents[i]];
@@ -34,7 +35,7 @@ bool Zones::IsInTheWay(const Ball& other, const Mover& mover) const {
   return GapBetween(other, mover.around.ball) - kMarginM < RoomFor(mover);
 }
 
-// Those that are near; whoever is in the group brings its own.
+// The models whose static shapes are near; a model of the group brings its own.
 std::vector<int> Zones::BasesOf(const std::vector<std::size_t>& group,
                                 std::span<const Mover> movers,
                                 std::span<const StaticBall> statics) const {
@@ -89,7 +90,7 @@ Grouping Zones::Group(std::span<const Mover> movers, std::span<const Ball> other
     double room = grouping.groups[group_of[i]].size() > 1 ? own + kRoomInGroupM : kMostRoomM;
     for (std::size_t k = 0; k < count; ++k) {
       if (group_of[k] == group_of[i]) continue;
-      // Both have what they need, and half each of what is left.
+      // Both models have the room that they need, and each has half of the room that is left.
       const double left = GapBetween(ball, movers[k].around.ball) - own - RoomFor(movers[k]);
       room = std::min(room, own + left / 2);
     }

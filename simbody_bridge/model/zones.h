@@ -1,7 +1,8 @@
-// Which models are near each other, and the zones of those that are not: balls, each around a
-// model, that do not overlap unless the models are in one group. While all models stay in their
-// zones, none can touch one of another group. Whoever is about to leave its zone needs another one,
-// and so may those whose zones are in the way: they are grouped anew. Pure.
+// Finds which models are near each other, and the zones of models that are not: balls, each around
+// a model, that do not overlap unless the models are in one group. While all models stay in their
+// zones, no model can touch one of another group. A model that is about to leave its zone needs
+// another zone, and so may models whose zones are in the way: all these models are grouped anew.
+// Pure.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +13,10 @@
 
 namespace tcs {
 
-// Those that move in a group have zones of little room, and so it is looked again soon whether they
-// have parted; whoever is alone has all the room that there is.
+// Movers in a group have zones of little room, and so it is looked again soon whether they have
+// parted; a mover that is alone has all the room that there is.
 struct Mover {
-  MovingBall around;  // all shapes of a model that move
+  MovingBall around;  // around the moving shapes of a model
   int unit = 0;       // models of one unit are always one group
   int group_before = 0;
   int model = 0;
@@ -36,14 +37,14 @@ struct Grouping {
 
 class Zones {
  public:
-  // Whoever has just got a zone cannot leave it before `horizon_s`.
+  // A model that has just got a zone cannot leave it before `horizon_s`.
   explicit Zones(double horizon_s) : horizon_s_(horizon_s) {}
 
   // Whether there is too little room for a zone beside `other`, the zone of a model that stays what
   // it is.
   bool IsInTheWay(const Ball& other, const Mover& mover) const;
-  // `others` are zones that stay, and are in nobody's way. What is static joins nobody: it is in a
-  // group's zones, or out of them.
+  // `others` are zones that stay, and are in no mover's way. A static shape joins no group: it is
+  // in a group's zones, or out of them.
   Grouping Group(std::span<const Mover> movers, std::span<const Ball> others,
                  std::span<const StaticBall> statics) const;
 

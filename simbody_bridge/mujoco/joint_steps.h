@@ -18,23 +18,24 @@ namespace tcs {
 
 class MujocoJointSteps {
  public:
-  // `bodies` are MuJoCo's, of each of the forest's, which outlives this.
+  // `bodies` are MuJoCo's, for each body of `forest`, which outlives this.
   MujocoJointSteps(const Forest& forest, const mjModel& model, std::span<const int> bodies);
 
   // Whether a joint has damping or friction.
   bool AreNeeded() const { return are_needed_; }
-  // Whether the stiffness of what drives that speed acts in closed form, too.
+  // Whether the stiffness of the drive of that speed acts in closed form, too.
   bool TakeStiffnessOf(int speed) const;
 
-  // How forces fall with each of MuJoCo's speeds, and with each coordinate that is one's only one.
+  // How forces fall with each of MuJoCo's speeds, and with each coordinate that is a joint's only
+  // one.
   struct Slopes {
     std::vector<double> by_speed, by_coordinate;
   };
   // Finds all up to qacc_smooth where the positions are these, and the speeds those of the data;
   // false where something touches, or a joint is in a stop.
   using Find = std::function<bool(const double* positions)>;
-  // From where the data are, a step as long as the model has it. False: nothing is left that can be
-  // used.
+  // Takes a step from where the data are, as long as the model has it. False: nothing is left that
+  // can be used.
   bool Step(const mjModel& model, mjData* data, const Slopes& slopes, const Find& find);
 
  private:

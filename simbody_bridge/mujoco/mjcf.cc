@@ -12,12 +12,12 @@ namespace tcs {
 namespace {
 
 // Friction of joints holds them: with MuJoCo's own softness a light joint creeps by half a radian a
-// second. Joints' stops and mimics are as hard as steps of 1 ms bear: time constants of four of
-// them. With contacts as hard as that a stack of boxes shakes itself down.
+// second. Joints' stops and mimics are as hard as steps of 1 ms bear: time constants of four steps.
+// With contacts as hard as that a stack of boxes shakes itself down.
 constexpr const char* kHard = "0.004 1";
 constexpr const char* kContact = "0.01 1";
-// A contact comes in over a fifth of a millimetre. One that is as hard at once throws a caster that
-// is dragged off the floor, again and again, and the wheels with it.
+// A contact comes in over a fifth of a millimetre. A contact that is as hard at once throws a
+// caster that is dragged off the floor, again and again, and the wheels with it.
 constexpr const char* kComingIn = "0.01 0.95 0.0002";
 
 std::string Text(const std::array<double, 3>& v) {
@@ -83,8 +83,8 @@ class Writer {
     text_ += "</asset>";
   }
 
-  // What of a model is fixed to the world is a body of its own, so that what is joined to it can be
-  // told not to collide with it.
+  // The part of a model that is fixed to the world is a body of its own, so that bodies that are
+  // joined to it can be told not to collide with it.
   void WriteFixedBases() {
     const int models = static_cast<int>(forest_.has_self_collision.size());
     for (int model = 0; model < models; ++model) {
@@ -97,7 +97,7 @@ class Writer {
   void WriteBody(std::size_t index) {
     const TreeBody& body = forest_.bodies[index];
     Matrix3 i = body.inertia_kgm2;
-    // Of a whole matrix MuJoCo takes no smaller eigenvalues.
+    // MuJoCo takes no smaller eigenvalues of a whole matrix.
     constexpr double kLeast = 1e-14;
     const bool is_diagonal = i[0][1] == 0 && i[0][2] == 0 && i[1][2] == 0;
     const bool is_tiny = i[0][0] + i[1][1] + i[2][2] < 100 * kLeast;
@@ -184,7 +184,8 @@ class Writer {
       text_ += fmt::format("<geom name='s{}' {} {}{}", i, TextOf(geometry),
                            has_rolls_ && is_flat ? "contype='3' " : "", rest);
       // MuJoCo has a cylinder touch by its rims; a wheel would turn round one of these, as if the
-      // wheels were nearer to each other by their width. What is flat meets its middle, too.
+      // wheels were nearer to each other by their width. Flat shapes meet the cylinder's middle,
+      // too.
       if (const auto* cylinder = std::get_if<CylinderShape>(&geometry)) {
         constexpr double kMiddle = 0.1;
         text_ += fmt::format(
@@ -249,8 +250,8 @@ class Writer {
     text_ += "</actuator>";
   }
 
-  // MuJoCo leaves out pairs of bodies only. Of bodies of which some links are to pass through each
-  // other and others not, these are paired by name.
+  // MuJoCo leaves out pairs of bodies only. Where some links of two bodies are to pass through each
+  // other and others not, the others are paired by name.
   void WriteExclusions() {
     text_ += "<contact>";
     std::set<std::pair<int, int>> apart;  // bodies
@@ -274,7 +275,7 @@ class Writer {
     text_ += "</contact>";
   }
 
-  // Of the bodies of two links, which become known to be apart.
+  // Pairs the shapes that touch, of the bodies of two links; the bodies become known to be apart.
   void PairWhatTouches(const std::pair<int, int>& links, std::set<std::pair<int, int>>* apart) {
     const auto first = std::ranges::find(forest_.shapes, links.first, &ForestShape::link);
     const auto second = std::ranges::find(forest_.shapes, links.second, &ForestShape::link);

@@ -1,5 +1,5 @@
-// Free bodies on MuJoCo: each is a model of one link that touches nothing. Islands of equal bodies
-// share a system, which is a function.
+// Free bodies on MuJoCo: each body is a model of one link that touches nothing. Islands of equal
+// bodies share a system, which is a function.
 #include <algorithm>
 #include <deque>
 #include <map>
@@ -41,7 +41,7 @@ class MujocoBodies : public SetStepEngine<BodyEngine> {
     for (const std::vector<int>& bodies : islands) {
       MujocoSystem*& system = known[MassesOf(world, bodies)];
       if (system == nullptr) system = &AddSystem(world, bodies);
-      // Its start is that of the island that it was made for.
+      // The system's start is that of the island that it was made for.
       islands_.push_back({system, StartOf(bodies)});
     }
   }
@@ -94,7 +94,8 @@ class MujocoBodies : public SetStepEngine<BodyEngine> {
     return positions;
   }
 
-  // Walls push as they do at the beginning of the step; what else acts has its mean over it.
+  // Walls push as they do at the beginning of the step; all other loads have their mean over the
+  // step.
   void Advance(const IslandStep& step, double seconds, std::vector<double>* to) override {
     const std::size_t bodies = step.wrenches.size();
     acting_.assign(2 * bodies, Wrench{});

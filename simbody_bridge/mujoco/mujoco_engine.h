@@ -9,8 +9,8 @@
 
 namespace tcs {
 
-// `world` has passed CheckWorld. Throw DynamicsError if MuJoCo refuses it all the same, or where
-// this build has no MuJoCo.
+// `world` has passed CheckWorld. The functions throw DynamicsError if MuJoCo refuses the world all
+// the same, or where this build has no MuJoCo.
 std::unique_ptr<ModelEngine> MakeMujocoModels(const WorldSpec& world,
                                               const std::vector<std::vector<int>>& islands);
 std::unique_ptr<BodyEngine> MakeMujocoBodies(const WorldSpec& world,

@@ -186,8 +186,8 @@ void MujocoSystem::SetDrive(std::size_t joint, const JointDrive& drive) {
   model_->actuator_biasprm[mjNBIAS * actuator + 2] = -drive.damping;
 }
 
-// All that is along the axes of a body's links is one actuator of the body's, which turns with it:
-// each one costs as much as a joint.
+// All wrenches along the axes of a body's links are one actuator of the body, which turns with the
+// body: each actuator costs as much as a joint.
 void MujocoSystem::ActOnLinks(std::span<const Wrench> acting) {
   std::fill_n(data_->xfrc_applied, 6 * model_->nbody, 0.0);
   std::fill(along_body_.begin(), along_body_.end(), Load{});
@@ -216,7 +216,7 @@ void MujocoSystem::ActOnLinks(std::span<const Wrench> acting) {
   }
 }
 
-// At the link's origin, of a body that is where it is.
+// The load acts at the link's origin, on a body whose place is known.
 void MujocoSystem::ActInWorld(const TreeLink& link, const Load& load) {
   const int body = bodies_[static_cast<std::size_t>(link.body)];
   const double* p = data_->xpos + 3 * body;
@@ -233,7 +233,7 @@ void MujocoSystem::ActInWorld(const TreeLink& link, const Load& load) {
   }
 }
 
-// It would begin anew from its own start.
+// After a failure MuJoCo would begin anew from its own start.
 bool MujocoSystem::HasFailed() const {
   return data_->warning[mjWARN_BADQPOS].number > 0 || data_->warning[mjWARN_BADQVEL].number > 0 ||
          data_->warning[mjWARN_BADQACC].number > 0;
@@ -263,8 +263,8 @@ void MujocoSystem::FindFailedBody() {
   }
 }
 
-// Whether Runge-Kutta 4 bears it, or what takes its place: nothing touches, and no servo is as
-// quick as the step, unless it acts in closed form.
+// Whether Runge-Kutta 4, or the method that takes its place, bears the step: nothing touches, and
+// no servo is as quick as the step, unless the servo acts in closed form.
 bool MujocoSystem::IsSmooth(std::span<const Wrench> acting, double seconds) const {
   if (data_->ncon > 0) return false;
   for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
@@ -340,7 +340,7 @@ void MujocoSystem::FindPositions(const double* positions) {
   if (were_apart && !are_apart_) find(true);
 }
 
-// Of positions that have been found.
+// Finds the accelerations of positions that have been found.
 void MujocoSystem::FindAccelerations() {
   mj_fwdActuation(model_.get(), data_.get());
   mj_fwdAcceleration(model_.get(), data_.get());
@@ -364,15 +364,15 @@ void MujocoSystem::StepSmoothly() {
 }
 
 // MuJoCo's stops, mimics and friction of joints are as soft as befits the inertia that it has found
-// of them, once: beside what a servo adds to that they would be nothing.
+// of them, once: beside the inertia that a servo adds they would be nothing.
 void MujocoSystem::SetArmature(int speed, double inertia) {
   model_->dof_armature[speed] = inertia;
   const double inverse = inverse_inertias_[static_cast<std::size_t>(speed)];
   model_->dof_invweight0[speed] = inertia > 0 ? inverse / (1 + inertia * inverse) : inverse;
 }
 
-// Whether MuJoCo would find the positions again where they are: it puts quaternions in order each
-// time, which turns a third of them by a rounding.
+// Whether MuJoCo would find the positions again where they are: MuJoCo puts quaternions in order
+// each time, which turns a third of them by a rounding.
 bool MujocoSystem::AreInOrder() {
   begin_.assign(data_->qpos, data_->qpos + model_->nq);
   mj_normalizeQuat(model_.get(), begin_.data());
@@ -380,7 +380,7 @@ bool MujocoSystem::AreInOrder() {
 }
 
 // A servo with the stiffness k and the damping d gives what it gives at the end of the step, where
-// the joint is at q + h u' with the speed u'. That is what a damping d + h k gives at the
+// the joint is at q + h u' with the speed u'. This effort is what a damping d + h k gives at the
 // beginning, less (d + h k) (u' - u): as if the joint had an inertia of h (d + h k) more, with
 // which MuJoCo solves for everything else. A servo that would give more than it can is held to its
 // limit, and all is solved again.
@@ -429,7 +429,7 @@ bool MujocoSystem::ReachLimits(std::span<const Wrench> acting, double seconds) {
   return is_new;
 }
 
-// All that the two kinds of steps have in common.
+// The part that the two kinds of steps have in common.
 void MujocoSystem::Begin(std::span<const double> from, std::span<const Wrench> acting,
                          double seconds) {
   for (mjWarningStat& warning : data_->warning) warning.number = 0;
@@ -449,8 +449,8 @@ void MujocoSystem::Begin(std::span<const double> from, std::span<const Wrench> a
   FindPositions(begin_.data());
 }
 
-// Whether it was a step of joints with damping or friction, and has been taken; else all is as it
-// began.
+// Whether the step was one of joints with damping or friction, and has been taken; else the data
+// are as at the step's beginning.
 bool MujocoSystem::TakesJoints(std::span<const double> from, std::span<const Wrench> acting,
                                double seconds) {
   if (joint_steps_ == nullptr || !IsSmooth(acting, seconds) || IsInStop()) return false;
@@ -463,7 +463,7 @@ void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> ac
                         double seconds, std::vector<double>* to) {
   Begin(from, acting, seconds);
   if (TakesJoints(from, acting, seconds)) {
-    // What touches is left to the next step.
+    // Contacts are left to the next step.
   } else if (joint_steps_ == nullptr && IsSmooth(acting, seconds)) {
     StepSmoothly();
   } else {
@@ -502,8 +502,8 @@ void MujocoSystem::AddForces(double share, std::vector<ShapeContact>* contacts) 
   }
 }
 
-// A smooth step begins without contacts, but may come to some: they are those of the stages of
-// Runge-Kutta 4, each as far as it counts.
+// A smooth step begins without contacts, but may come to some: these are the contacts of the stages
+// of Runge-Kutta 4, each as far as its stage counts.
 void MujocoSystem::AddForcesOfStages(double seconds, std::vector<ShapeContact>* contacts) {
   const auto positions = static_cast<std::size_t>(model_->nq);
   const auto speeds = static_cast<std::size_t>(model_->nv);

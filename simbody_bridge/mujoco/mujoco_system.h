@@ -1,10 +1,10 @@
-// A forest as MuJoCo knows it, as a function: from a state and what acts to the state one step
-// later. What MuJoCo itself remembers from step to step is written into it before each step: the
-// guess that its solver begins with is part of the state.
+// A forest as MuJoCo knows it, as a function: from a state and the acting wrenches to the state one
+// step later. Everything that MuJoCo itself remembers from step to step is written into it before
+// each step: the guess that its solver begins with is part of the state.
 //
-// A smooth step is Runge-Kutta 4's; of joints with damping or friction it is one in which these act
-// in closed form (joint_steps.h). Where something touches, and where a servo is too stiff for
-// that, it is of first order and implicit in the servos, as on Simbody
+// A smooth step is Runge-Kutta 4's; for joints with damping or friction the step is one in which
+// these act in closed form (joint_steps.h). Where something touches, and where a servo is too stiff
+// for that, the step is of first order and implicit in the servos, as on Simbody
 // (simbody/tree/contact_step.h): explicit servos of wheels make these chatter, and slip.
 #pragma once
 
@@ -27,23 +27,25 @@ namespace tcs {
 
 class MujocoSystem {
  public:
-  // `forest` and what it points into outlive this. Throws DynamicsError if MuJoCo refuses it.
+  // `forest` and what it points into outlive this. Throws DynamicsError if MuJoCo refuses the
+  // forest.
   MujocoSystem(const Forest& forest, const std::array<double, 3>& gravity_mps2);
 
   // Positions, speeds, and the solver's guess, at the start.
   const std::vector<double>& start() const { return start_; }
 
-  // Not finite where MuJoCo cannot go on. `acting` is by place.
+  // Takes a step; `to` is not finite where MuJoCo cannot go on. `acting` is by place.
   void Step(std::span<const double> from, std::span<const Wrench> acting, double seconds,
             std::vector<double>* to);
-  // What touches in such a step, with the mean of its force over the step.
+  // Finds the contacts in such a step, with the means of their forces over the step.
   void FindForces(std::span<const double> from, std::span<const Wrench> acting, double seconds,
                   std::vector<ShapeContact>* contacts);
 
-  // Of the forest, whose joint it was that a step has failed by; -1: none has, or nobody knows.
+  // The body of the forest by whose joint a step has failed; -1: no step has, or the body is not
+  // known.
   int failed_body() const { return failed_body_; }
 
-  // What of a state is a body's, into a state of another system, in which it is `to_body`.
+  // Copies a body's part of a state into a state of another system, in which the body is `to_body`.
   void CopyBody(std::size_t body, std::span<const double> state, const MujocoSystem& to,
                 std::size_t to_body, std::span<double> into) const;
   void ReadLinks(std::span<const double> state, std::span<const int> links,
@@ -92,18 +94,18 @@ class MujocoSystem {
   std::unique_ptr<mjData, DeleteData> data_;
   std::vector<int> bodies_, body_actuators_;  // MuJoCo's, of each of the forest's bodies
   std::vector<int> joint_actuators_;          // of each joint; -1: none
-  std::vector<int> positions_, speeds_;       // where those of each joint are; -1: fixed
+  std::vector<int> positions_, speeds_;       // the places of each joint's; -1: fixed
   std::vector<std::size_t> shapes_;           // of the forest, of each of MuJoCo's geoms
   std::vector<double> start_;
   std::vector<double> inverse_inertias_;           // of each speed, as MuJoCo has found them
-  std::unique_ptr<MujocoJointSteps> joint_steps_;  // none where no joint needs them
+  std::unique_ptr<MujocoJointSteps> joint_steps_;  // null: no joint needs them
   MujocoJointSteps::Slopes slopes_;                // memory of StepJoints
   ShapePairs pairs_;
   int failed_body_ = -1;
   bool are_apart_ = false;  // where positions were found last
   RungeKutta4 runge_kutta_;
   std::vector<double> begin_;     // memory of Begin and AreInOrder: positions
-  std::vector<double> at_limit_;  // memory: what each joint's effort is held to; 0: free
+  std::vector<double> at_limit_;  // memory: the effort each joint is held to; 0: free
   std::vector<Load> along_body_;  // memory of ActOnLinks
 };
 

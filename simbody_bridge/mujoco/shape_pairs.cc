@@ -11,7 +11,7 @@ constexpr std::size_t kMostPairs = 64;
 // Beyond what rounding may do.
 constexpr double kClearanceM = 1e-3;
 
-// Planes have no bounding ball, and for boxes it says little: a floor may be one.
+// Planes have no bounding ball, and for boxes the ball says little: a floor may be a box.
 bool IsFlat(const mjModel& model, int geom) {
   return model.geom_type[geom] == mjGEOM_PLANE || model.geom_type[geom] == mjGEOM_BOX;
 }

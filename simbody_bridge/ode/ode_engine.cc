@@ -13,7 +13,7 @@
 namespace tcs {
 namespace {
 
-// The island's state: its bodies', one after the other.
+// The island's state: the bodies' states, one after the other.
 constexpr std::size_t kNumbers = sizeof(BodyState) / sizeof(double);
 static_assert(kNumbers == 13, "BodyState has padding or a new member");
 

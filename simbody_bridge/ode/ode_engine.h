@@ -1,8 +1,9 @@
 // ODE, the Open Dynamics Engine, as an engine of islands: the engine of Gazebo, and so the baseline
 // that the paper compares with. Semi-implicit Euler by steps of one length.
 //
-// It lives below simbody_bridge/, whose name is older than the second engine: the interface, the
-// checks of a world, the islands and the walls of a region stand there and are shared.
+// The engine lives below simbody_bridge/, whose name is older than the second engine: the
+// interface, the checks of a world, the islands and the walls of a region stand there and are
+// shared.
 #pragma once
 
 #include <memory>

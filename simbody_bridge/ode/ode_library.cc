@@ -21,7 +21,7 @@ std::string TextOf(const char* format, va_list arguments) {
 }
 
 // ODE calls these for errors and failed assertions, and would end the process if they returned. An
-// exception may pass through it: it is C++, built with unwind tables, and holds no locks.
+// exception may pass through ODE: the library is C++, built with unwind tables, and holds no locks.
 [[noreturn]] void ThrowError(int number, const char* format, va_list arguments) {
   throw DynamicsError(fmt::format("ODE, error {}: {}", number, TextOf(format, arguments)));
 }

@@ -4,9 +4,9 @@
 
 namespace tcs {
 
-// Call before anything else of ODE's; does something the first time only. From then on what ODE
-// takes for an error is thrown as DynamicsError instead of ending the process, and what it has to
-// say besides is one line on stderr. Throws DynamicsError if libode cannot be used.
+// Call before anything else of ODE's; does something the first time only. From then on an error of
+// ODE is thrown as DynamicsError instead of ending the process, and any other message of ODE is one
+// line on stderr. Throws DynamicsError if libode cannot be used.
 void OpenOde();
 
 }  // namespace tcs

@@ -13,7 +13,7 @@ dBodyID MakeBody(dWorldID world, const BodySpec& spec) {
   const auto& inertia = spec.inertia_kgm2;
   dMassSetParameters(&mass, spec.mass_kg, 0, 0, 0, inertia[0], inertia[1], inertia[2], 0, 0, 0);
   dBodySetMass(body, &mass);
-  // By the angle that the angular velocity makes in a step, not by its tangent.
+  // The body turns by the angle that the angular velocity makes in a step, not by its tangent.
   dBodySetFiniteRotationMode(body, 1);
   return body;
 }
@@ -46,7 +46,7 @@ BodyState ReadBody(dBodyID body) {
 void OdeWorld::Destroy::operator()(dxWorld* world) const { dWorldDestroy(world); }
 
 // Everything that ODE would do besides Newton and Euler stays off: damping, a limit of the angular
-// speed, putting bodies at rest to sleep. Those are its defaults, but for the last, which is
+// speed, putting bodies at rest to sleep. These are ODE's defaults, but for the last, which is
 // written down because a sleeping body would ignore commands.
 OdeWorld::OdeWorld(const WorldSpec& world) : spec_(world), world_(dWorldCreate()) {
   if (!world_) throw DynamicsError("ODE cannot make its world; check whether memory is left");

@@ -1,6 +1,6 @@
 // ODE's world with our bodies in it, as a function: from where they are and what acts on them to
-// where they are one step later. What ODE itself remembers from step to step is not relied upon:
-// every step begins by writing all of the state into ODE, so that equal states go on equally,
+// where they are one step later. The class does not rely on what ODE itself remembers from step to
+// step: every step begins by writing all of the state into ODE, so that equal states go on equally,
 // however they were come by.
 #pragma once
 

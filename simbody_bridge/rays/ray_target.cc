@@ -27,7 +27,8 @@ struct Stretch {
 
 constexpr Stretch kNowhere = {kMeetsNothing, -kMeetsNothing};
 
-// Where product with a normal of the origin is `height` and grows by `slope`: up to `most`.
+// The stretch up to `most` of a ray whose product with a normal is `height` at the origin and grows
+// by `slope`.
 Stretch Below(double height, double slope, double most) {
   if (slope == 0) return height <= most ? Stretch{} : kNowhere;
   const double at = (most - height) / slope;
@@ -66,7 +67,7 @@ Stretch InCylinder(const Ray& ray, double radius, double length) {
   return stretch;
 }
 
-// What is put together of several enters where the first of them does, unless it began in one.
+// A ray enters a shape of several parts where it enters the first of them, unless it began in one.
 double FirstOf(std::initializer_list<Stretch> parts) {
   double first = kMeetsNothing;
   for (const Stretch& part : parts) {
@@ -134,7 +135,7 @@ RayTarget::RayTarget(const Geometry& geometry) {
   }
 }
 
-// What spans no volume has been refused where the model was read.
+// A mesh that spans no volume has been refused where the model was read.
 RayTarget::Hull RayTarget::TakeHull(const Mesh& mesh) {
   Hull hull;
   const auto found = HullOf(mesh.vertices_m);

@@ -10,7 +10,7 @@
 
 namespace tcs {
 
-// What a ray that meets nothing has as its distance.
+// The distance of a ray that meets nothing.
 inline constexpr double kMeetsNothing = std::numeric_limits<double>::infinity();
 
 struct Ray {
@@ -23,10 +23,11 @@ class RayTarget {
   // A mesh is its convex hull, as where it touches something.
   explicit RayTarget(const Geometry& geometry);
 
-  // How far the ray goes until it enters the solid. One that begins inside does not enter it.
+  // How far the ray goes until it enters the solid. A ray that begins inside does not enter the
+  // solid.
   double Meet(const Ray& ray) const;
 
-  // A ball around all of it, in its frame; infinite around a plane.
+  // A ball around all of the shape, in the shape's frame; infinite around a plane.
   const std::array<double, 3>& center_m() const { return center_m_; }
   double radius_m() const { return radius_m_; }
 

@@ -1,5 +1,5 @@
-// What there is in a world for rays to meet: the shapes of its fixtures and of its models' links,
-// where these are. It knows no engine: links are where it is told that they are.
+// The things in a world that rays can meet: the shapes of its fixtures and of its models' links,
+// where these are. The scene knows no engine: links are where it is told that they are.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@ namespace tcs {
 
 class Scene {
  public:
-  // Without the link `from` (as Dynamics numbers them) and what is fixed to it: a sensor does not
-  // see its own housing.
+  // A scene without the link `from` (as Dynamics numbers links) and what is fixed to it: a sensor
+  // does not see its own housing.
   Scene(const WorldSpec& world, int from);
 
-  // The links that move: Place wants to be told of each. As Dynamics numbers them.
+  // The links that move: Place wants to be told of each link. As Dynamics numbers links.
   std::span<const int> links() const { return links_; }
-  // Where they are, in the world.
+  // The poses of these links, in the world.
   void Place(std::span<const Pose> poses);
 
   // How far a ray in the world goes until it meets something.
@@ -30,7 +30,7 @@ class Scene {
   struct Placed {
     RayTarget target;
     Pose in_link;
-    // Where its frame is: the axes are the rows.
+    // The place of the target's frame: the axes are the rows.
     std::array<std::array<double, 3>, 3> axes{};
     std::array<double, 3> origin_m{}, center_m{};
   };

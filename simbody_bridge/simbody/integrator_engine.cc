@@ -106,8 +106,8 @@ void IntegratorEngine::SetState(const Island& island, const IslandStep& step,
 }
 
 // An integrator remembers which length it tries next, and can be told another one only by setting
-// it up anew. That costs more than a step, and happens where a step has failed or more than one has
-// been taken back.
+// it up anew. The setup costs more than a step, and happens where a step has failed or more than
+// one has been taken back.
 void IntegratorEngine::SetUp(Island& island, const IslandStep& step) const {
   SimTK::State state = island.model->blank_state();
   SetState(island, step, state);
@@ -147,7 +147,7 @@ void IntegratorEngine::Take(IslandStep& step) {
   }
 }
 
-// stepTo's second argument is the limit that Simbody does not pass; it returns after each step.
+// stepTo's second argument is the limit that Simbody does not pass; stepTo returns after each step.
 void IntegratorEngine::StepOnce(SimTK::Integrator& integrator, double limit_s) const {
   while (integrator.getAdvancedTime() <= 0) {
     const auto status = integrator.stepTo(limit_s, limit_s);

@@ -1,4 +1,5 @@
-// Simbody as an engine of islands, by the integrators that it brings: one for each island.
+// Simbody as an engine of islands, by the integrators that it brings: one integrator for each
+// island.
 #pragma once
 
 #include <memory>
@@ -8,7 +9,7 @@
 
 namespace tcs {
 
-// `world` has passed CheckWorld. Throws what Simbody throws if it refuses it all the same.
+// `world` has passed CheckWorld. Throws what Simbody throws if it refuses the world all the same.
 std::unique_ptr<BodyEngine> MakeIntegratorEngine(const WorldSpec& world,
                                                  const std::vector<std::vector<int>>& islands);
 

@@ -5,7 +5,7 @@
 namespace tcs {
 namespace {
 
-constexpr double kSafety = 0.9;  // of the length that the error of the last one promises
+constexpr double kSafety = 0.9;  // of the length that the last error promises
 constexpr double kMostGrowth = 5, kMostShrinking = 0.1, kLeastShrinking = 0.5;
 
 }  // namespace
@@ -35,10 +35,11 @@ bool StepLength::Judge(double error, double accuracy, IslandStep* step) {
   const double promised_s = kSafety * h * std::cbrt(accuracy / error);  // infinite without error
   if (error <= accuracy) {
     step->length_s = h;
-    // What a limit did not let it try it has no reason to give up, nor to hope for more.
+    // Error control has no reason to give up a length that a limit did not let it try, nor to hope
+    // for more.
     const bool is_limited = is_limited_ || is_cut_;
     const double most_s = is_limited ? std::min(step->try_s, failed_s_) : kMostGrowth * h;
-    // What ends early at a kink says nothing of steps that are much longer.
+    // A step that ends early at a kink says nothing of steps that are much longer.
     const bool is_telling = !is_cut_ || kMostGrowth * h >= most_s;
     step->next_try_s = is_telling ? std::clamp(promised_s, h, std::max(h, most_s)) : most_s;
     return true;

@@ -1,6 +1,6 @@
 // The arithmetic of Runge-Kutta 3(2), whoever evaluates the derivatives: Kutta's method of third
-// order with the midpoint rule in it, whose difference says how long the steps may be. It is the
-// method of Simbody's integrator of that name, which knows only one system with one clock.
+// order with the midpoint rule in it, whose difference says how long the steps may be. The method
+// is that of Simbody's integrator of that name, which knows only one system with one clock.
 #pragma once
 
 #include <algorithm>
@@ -13,24 +13,25 @@
 
 namespace tcs {
 
-// Of a body's or a joint's coordinates and speeds in a state: where they begin, and how many there
-// are. An error is a root mean square over those of one.
+// The coordinates and speeds of a body or a joint in a state: where they begin, and how many there
+// are. An error is a root mean square over those of one body or joint.
 struct StateSlots {
   std::size_t q, q_count, u, u_count;
 };
 
-// Where the second derivatives of a step of `h` seconds are taken, from those at its beginning.
+// The state where the second derivatives of a step of `h` seconds are taken, from those at its
+// beginning.
 void KuttaMiddle(const IslandStep& step, double h, std::vector<double>* state);
-// Where the third ones are.
+// The state where the third derivatives are taken.
 void KuttaEnd(const IslandStep& step, const std::vector<double>& middle_rate, double h,
               std::vector<double>* state);
-// Where it leads: step.to.
+// The state where the step leads: step.to.
 void KuttaStep(const std::vector<double>& middle_rate, const std::vector<double>& end_rate,
                double h, IslandStep* step);
 
 // The greatest error among `count` bodies or joints, and `whose` it is, of coordinates or of
-// speeds, relative for speeds above 1: NaN or infinite if any is. `error(i)` is that of number i of
-// the state, `slots_of` gives the StateSlots of each.
+// speeds, relative for speeds above 1: NaN or infinite if any is. `error(i)` is the error of number
+// i of the state, `slots_of` gives the StateSlots of each.
 template <class Error, class SlotsOf>
 double GreatestError(const IslandStep& step, const Error& error, std::size_t count,
                      const SlotsOf& slots_of, std::size_t* whose = nullptr) {
@@ -55,7 +56,7 @@ double GreatestError(const IslandStep& step, const Error& error, std::size_t cou
   return std::isfinite(all) ? std::sqrt(greatest) : all;
 }
 
-// Of a step of `h` seconds that has been tried.
+// The error of a step of `h` seconds that has been tried.
 template <class SlotsOf>
 double KuttaError(const IslandStep& step, const std::vector<double>& middle_rate, double h,
                   std::size_t count, const SlotsOf& slots_of, std::size_t* whose = nullptr) {
@@ -68,18 +69,18 @@ double KuttaError(const IslandStep& step, const std::vector<double>& middle_rate
 // Shorter steps lead nowhere: islands count whole nanoseconds.
 inline constexpr double kShortestStepS = 1e-9;
 
-// How long a step is that error control lets be as long as it can.
+// The length of a step that error control lets be as long as it can.
 class StepLength {
  public:
   StepLength() = default;
-  // Of a step that is at most so long.
+  // The length of a step that is at most `most_s` long.
   StepLength(const IslandStep& step, double most_s)
       : is_limited_(step.try_s > most_s), seconds_(std::min(step.try_s, most_s)) {}
 
-  // To try.
+  // The length to try.
   double seconds() const { return seconds_; }
   void Set(double seconds) { seconds_ = seconds; }
-  // Shorter than error control has it, because of what happens then.
+  // Makes the length shorter than error control has it, because of what happens then.
   void Cut(double seconds) {
     seconds_ = seconds;
     is_cut_ = true;

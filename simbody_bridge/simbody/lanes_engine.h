@@ -1,4 +1,4 @@
-// Simbody as an engine of islands, side by side: it gives their derivatives, and the steps are
+// Simbody as an engine of islands, side by side: Simbody gives their derivatives, and the steps are
 // Runge-Kutta 3's.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace tcs {
 
-// `world` has passed CheckWorld. Throws what Simbody throws if it refuses it all the same.
+// `world` has passed CheckWorld. Throws what Simbody throws if it refuses the world all the same.
 std::unique_ptr<BodyEngine> MakeLanesEngine(const WorldSpec& world,
                                             const std::vector<std::vector<int>>& islands);
 

@@ -1,4 +1,4 @@
-// An island as Simbody knows it: what does not change while time advances. All state is in
+// An island as Simbody knows it: the part that does not change while time advances. All state is in
 // SimTK::State objects, or in their continuous part alone, an array of all coordinates and then all
 // speeds.
 #pragma once
@@ -18,8 +18,8 @@ inline constexpr std::size_t kFreeBodyCoordinates = 7, kFreeBodySpeeds = 6, kFre
 
 class SimbodyModel {
  public:
-  // With the world's bodies of these indices. `world` has passed CheckWorld. Throws what Simbody
-  // throws if it still refuses it.
+  // A model with the world's bodies of these indices. `world` has passed CheckWorld. Throws what
+  // Simbody throws if it still refuses the world.
   SimbodyModel(const WorldSpec& world, const std::vector<int>& bodies);
   SimbodyModel(const SimbodyModel&) = delete;
   SimbodyModel& operator=(const SimbodyModel&) = delete;
@@ -30,7 +30,7 @@ class SimbodyModel {
   // A state of the system, in which nothing of the bodies is set yet.
   const SimTK::State& blank_state() const { return blank_state_; }
   void SetBody(SimTK::State& state, int body, const BodyState& value) const;
-  // What pushes the body, beside what varies in the course of a step.
+  // Sets the load on the body, beside the load that varies in the course of a step.
   void SetLoad(SimTK::State& state, int body, const Load& load) const;
   // See VaryingForce: for states that are evaluated from now on, whosever they are.
   void SetStep(const Loads& loads, const IslandStep& step) const { varying_->Set(loads, step); }
@@ -47,7 +47,7 @@ class SimbodyModel {
   SimTK::State blank_state_;
 };
 
-// How a body is in the continuous part of a state of `body_count` free bodies.
+// The state of a body in the continuous part of a state of `body_count` free bodies.
 BodyState ReadBody(std::span<const double> continuous, int body_count, int body);
 void WriteBody(const BodyState& value, int body_count, int body, std::span<double> continuous);
 // Makes the orientations' quaternions unit length again.

@@ -12,7 +12,7 @@ namespace tcs {
 namespace {
 
 constexpr std::size_t kMostLog2 = 5;  // wider, and a row leaves the cache between two evaluations
-// What an evaluation costs, relative to what it costs for each island in it.
+// The cost of an evaluation, relative to the cost of each island in it.
 constexpr std::size_t kCostOfRow = 3;
 
 // The width of the next row for so many islands: a row may have idle slots, but not many of them.

@@ -5,7 +5,7 @@
 namespace tcs {
 namespace {
 
-// Of a body among `bodies`.
+// The slots of a body among `bodies`.
 StateSlots SlotsOf(std::size_t bodies, std::size_t body) {
   return {body * kFreeBodyCoordinates, kFreeBodyCoordinates,
           bodies * kFreeBodyCoordinates + body * kFreeBodySpeeds, kFreeBodySpeeds};

@@ -31,7 +31,7 @@ class RungeKutta3 {
   bool Judge(Attempt& attempt) const;
 
   const double accuracy_;
-  std::vector<Attempt> attempts_;  // those that count are as many as there are steps
+  std::vector<Attempt> attempts_;  // the first ones count, as many as there are steps
   std::vector<std::size_t> open_;  // the attempts that have not succeeded yet
   std::vector<SimbodyRates::Lane> lanes_;
 };

@@ -4,7 +4,7 @@
 // the sides the other way round and then cannot decide, so those headers do not compile. An exact
 // match settles it; being a template, it gives way to an operator that a later Simbody may bring.
 //
-// NDEBUG: it changes the layout of classes that inline functions share with the library
+// NDEBUG: the macro changes the layout of classes that inline functions share with the library
 // (CacheEntryInfo in StateImpl.h), and Debian builds the library without it. A library built with
 // it would need the opposite here.
 #pragma once

@@ -8,8 +8,8 @@
 
 namespace tcs {
 
-// By the method and the steps that world.integrator names. `world` has passed CheckWorld. Throws
-// DynamicsError if Simbody refuses it all the same.
+// The engine, by the method and the steps that world.integrator names. `world` has passed
+// CheckWorld. Throws DynamicsError if Simbody refuses the world all the same.
 std::unique_ptr<BodyEngine> MakeSimbodyEngine(const WorldSpec& world,
                                               const std::vector<std::vector<int>>& islands);
 

@@ -30,7 +30,7 @@ double TimeOfGust(const WorldSpec& world, const BodySpec& body) {
 }  // namespace
 
 // Error control sees a wall or a gust only where it evaluates the forces. So no step is longer than
-// a quarter of the time that it takes.
+// a quarter of the time that the wall or the gust takes.
 VirtualDuration LongestStepBeside(const WorldSpec& world, const std::vector<int>& bodies) {
   double brief_s = std::numeric_limits<double>::infinity();
   for (const int index : bodies) {

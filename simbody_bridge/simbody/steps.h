@@ -1,4 +1,4 @@
-// What Simbody's steps have in common, whoever takes them.
+// The common part of Simbody's steps, whichever engine takes them.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace tcs {
 
-// Of a step that nothing limits.
+// The length of a step that nothing limits.
 inline constexpr VirtualDuration kLongestStep = VirtualDuration::Seconds(1000);
 
 // How long a step of these bodies may be at the most for error control to see the walls
@@ -17,11 +17,11 @@ VirtualDuration LongestStepBeside(const WorldSpec& world, const std::vector<int>
 // The state of free bodies `after_s` from the beginning of a step that was taken, before its end: a
 // cubic through both ends and their derivatives, of the same order as the methods.
 void Interpolate(const IslandStep& step, double after_s, std::vector<double>* state);
-// The same of any numbers; quaternions among them lose some of their length.
+// The same, for any numbers; quaternions among them lose some of their length.
 void InterpolateNumbers(const IslandStep& step, double after_s, std::vector<double>* state);
 
-// With set steps, where integrators do not interpolate: what a step gives that is shortened to end
-// `after` its beginning. `memory` is used again.
+// With set steps, where integrators do not interpolate: the state at the end of a step that is
+// shortened to end `after` its beginning. `memory` is used again.
 void TakeShortened(IslandEngine& engine, const IslandStep& step, VirtualDuration after,
                    IslandStep* memory, std::vector<double>* state);
 

@@ -1,5 +1,6 @@
-// What pushes bodies in the course of a step, as a Simbody force element: what loads.h computes
-// from the time and from how the bodies are. For integrators that evaluate forces by themselves.
+// The push on bodies in the course of a step, as a Simbody force element: the loads that loads.h
+// computes from the time and from how the bodies are. For integrators that evaluate forces by
+// themselves.
 #pragma once
 
 #include <utility>
@@ -15,11 +16,12 @@ class VaryingForce : public SimTK::Force::Custom::Implementation {
   explicit VaryingForce(std::vector<SimTK::MobilizedBody::Free> bodies)
       : bodies_(std::move(bodies)) {}
 
-  // The step that is being taken, whose bodies these are; a state's time is the time since its
-  // beginning. Both outlive its being taken. Whoever sets it evaluates no state from before.
+  // The step that is being taken, whose bodies these are; a state's time is the time since the
+  // step's beginning. `loads` and `step` outlive the taking of the step. The caller evaluates no
+  // state from before.
   void Set(const Loads& loads, const IslandStep& step) { loads_ = &loads, step_ = &step; }
 
-  // What IsConstant is none of its business.
+  // Loads that are IsConstant are left out.
   void calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
                  SimTK::Vector_<SimTK::Vec3>& particle_forces,
                  SimTK::Vector& mobility_forces) const override;

@@ -9,13 +9,13 @@
 
 namespace tcs {
 
-// A shape somewhere in the world; not a plane. Of a mesh it is the hull.
+// A shape somewhere in the world; not a plane. A mesh counts as its hull.
 class PlacedConvex {
  public:
   // The geometry outlives this.
   PlacedConvex(const Geometry& geometry, const Pose& pose) : geometry_(geometry), pose_(pose) {}
 
-  // Its point that is farthest along a direction that is not 0.
+  // The shape's point that is farthest along a direction that is not 0.
   std::array<double, 3> Farthest(const std::array<double, 3>& direction) const;
   const Pose& pose() const { return pose_; }
 
@@ -27,7 +27,7 @@ class PlacedConvex {
 // Whether the two are as near to each other as `margin_m`, or overlap.
 bool AreWithin(const PlacedConvex& a, const PlacedConvex& b, double margin_m);
 
-// The same of a shape and of all that is below z = 0 in the frame of a plane.
+// The same, for a shape and everything below z = 0 in the frame of a plane.
 bool IsWithin(const PlacedConvex& a, const Pose& plane, double margin_m);
 
 }  // namespace tcs

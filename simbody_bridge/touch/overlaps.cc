@@ -24,7 +24,7 @@ std::array<double, 4> Turn(const Vector& axis, double angle) {
   return {s * axis[0], s * axis[1], s * axis[2], std::cos(angle / 2)};
 }
 
-// Of the joint's child in the joint's frame.
+// The pose of the joint's child in the joint's frame.
 Pose Moved(const TreeBody& body) {
   const std::vector<double>& q = body.position;
   Pose pose;
@@ -65,7 +65,7 @@ std::vector<Pose> PosesOf(const RobotModel& model, const RigidTree& tree) {
   return poses;
 }
 
-// Nothing is left of what is thinner than two skins.
+// Nothing is left of a shape that is thinner than two skins.
 struct Smaller {
   static double Less(double size_m, double by_m) { return std::max(size_m - by_m, 1e-6); }
 

@@ -11,12 +11,12 @@ namespace tcs {
 
 class Touching {
  public:
-  // `link` as Dynamics numbers them. The world outlives this.
+  // `link` as Dynamics numbers links. The world outlives this.
   Touching(const WorldSpec& world, int link);
 
-  // The links that it has to know of: the link itself first. As Dynamics numbers them.
+  // The links whose poses Touches needs: the link itself first. As Dynamics numbers links.
   std::span<const int> links() const { return links_; }
-  // Where these are; whether the link is as near to something as `margin_m`.
+  // `poses` are those of these links. Whether the link is as near to something as `margin_m`.
   bool Touches(std::span<const Pose> poses, double margin_m) const;
 
  private:

@@ -30,7 +30,7 @@ dds::BodyVariances VariancesOf(const SensorErrors& errors) {
 
 }  // namespace
 
-// Nothing stays here: the hub has it.
+// No reading stays here: the hub has it.
 class DdsChannels::SensorOutlet final : public Outlet {
  public:
   // The encoder is of a sensor of bodies.
@@ -131,7 +131,7 @@ class DdsChannels::CommandInlet final : public Inlet {
     } else if (goals && goals->follow_trajectories) {
       give(dds::DecodeTrajectory(goals->names, realtime_offset, sample.cdr));
     } else if (goals) {
-      // Numbers without names are of what is driven.
+      // Numbers without names are of the joints or rotors that are driven.
       const bool has_names = message != dds::CommandMessage::kFloat64MultiArray;
       give(dds::DecodeJointCommand(message, has_names ? goals->names : goals->Driven(),
                                    goals->quantity, sample.cdr));

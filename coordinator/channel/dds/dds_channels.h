@@ -27,11 +27,11 @@ class DdsChannels final : public Transport {
   // Announces the scenario's topics.
   void Begin(VirtualDuration realtime_offset) override;
 
-  // These are outlived by this. That of one of the scenario's sensors:
+  // This object outlives the outlets and the inlet. The outlet of one of the scenario's sensors:
   std::unique_ptr<Outlet> OutletOf(const SensorChannelSpec& spec);
   // None where the scenario has no clock.
   std::unique_ptr<Outlet> Clock();
-  // All channels that carry commands on DDS: their samples come in one order.
+  // The inlet of all channels that carry commands on DDS: their samples come in one order.
   std::unique_ptr<Inlet> Commands();
 
  private:

@@ -1,6 +1,6 @@
-// What ROS 2's graph tools are told of the simulation's own endpoints, on `ros_discovery_info`: to
-// which node each belongs. The endpoints of a robot belong to the node /ROBOT/tcsim; endpoints of
-// bodies that no robot's client has, and the clock's, belong to the node /tcsim.
+// Tells ROS 2's graph tools, on `ros_discovery_info`, to which node each of the simulation's own
+// endpoints belongs. The endpoints of a robot belong to the node /ROBOT/tcsim; endpoints of bodies
+// that no robot's client has, and the clock's, belong to the node /tcsim.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,16 @@ class RosNodes {
   // The scenario outlives this.
   explicit RosNodes(const Scenario& scenario) : scenario_(scenario) {}
 
-  // An endpoint that has to do with the body, if with any; an index into the world's.
+  // Adds an endpoint that has to do with `body`, if with any; `body` is an index into the world's
+  // bodies.
   void Add(const dds::OwnEndpoints& ends, dds::OwnEndpoints::Index endpoint, dds::EndpointKind kind,
            int domain, std::optional<int> body);
 
-  // Of the node to which an endpoint belongs that has to do with the body.
+  // The namespace of the node to which an endpoint belongs that has to do with the body.
   static std::string NamespaceOf(const Scenario& scenario, std::optional<int> body);
 
-  // Announces them in each domain, also to programs that join later. `timestamp_ns` is DDS's source
-  // timestamp.
+  // Announces the nodes in each domain, also to programs that join later. `timestamp_ns` is DDS's
+  // source timestamp.
   void Announce(dds::OwnEndpoints& ends, std::int64_t timestamp_ns) const;
 
  private:

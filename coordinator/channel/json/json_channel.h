@@ -21,8 +21,8 @@ class DatagramSender {
   // Does not wait. False: the datagram is lost, because the receiver has no room, as on a network.
   virtual bool Send(const std::string& datagram) = 0;
   virtual shm::ReceiverAddress To() const = 0;
-  // False: what was sent so far is lost, because no program had the address. Asked only where that
-  // matters.
+  // False: the datagrams sent so far are lost, because no program had the address. Asked only where
+  // that matters.
   virtual bool IsHeard() { return true; }
   virtual std::string WhyUnheard() const = 0;  // as Outlet's
 };
@@ -31,7 +31,7 @@ class DatagramReceiver {
  public:
   virtual ~DatagramReceiver() = default;
   virtual int fd() const = 0;
-  // All that have come, whole, in order.
+  // All datagrams that have come, whole, in order.
   virtual std::vector<std::string> ReceiveAll() = 0;
   // "on 127.0.0.1:47011"
   virtual std::string Where() const = 0;
@@ -57,12 +57,12 @@ class JsonOutlet final : public Outlet {
   const std::vector<SensorField> fields_;
   OnTheWay on_the_way_;
   DatagramWatch* watch_ = nullptr;
-  std::string channel_;  // for it
+  std::string channel_;  // for watch_
 };
 
 class JsonInlet final : public Inlet {
  public:
-  // The channel with that number among the scenario's command channels.
+  // `channel` is the channel's number among the scenario's command channels.
   JsonInlet(std::unique_ptr<DatagramReceiver> receiver, std::size_t channel)
       : receiver_(std::move(receiver)), channel_(channel) {}
 

@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 constexpr std::string_view kExample = R"({"force": [0, 0, 0], "torque": [0, 0, 0]})";
 constexpr std::size_t kLongestQuote = 40;
 
-// Somebody else's text, short and printable.
+// A text from a program, quoted: short and printable.
 std::string Quote(const std::string& text) {
   const bool cut = text.size() > kLongestQuote;
   return Json(cut ? text.substr(0, kLongestQuote) + "..." : text)
@@ -154,7 +154,8 @@ namespace {
 
 constexpr std::string_view kJointExample = R"({"elbow": 0.5})";
 
-// What `value` says of a joint; empty if it fits.
+// Takes what `value` says of a joint into `goal`. Empty if `value` fits, else what is wrong with
+// it.
 std::string TakeGoal(const Json& value, JointQuantity quantity, JointGoal* goal) {
   if (const auto number = FiniteNumber(value)) {
     goal->Of(quantity) = *number;
@@ -236,7 +237,7 @@ std::optional<std::vector<double>> Numbers(const Json& value) {
   return numbers;
 }
 
-// What is wrong with a point; empty: it is in `point`.
+// Takes a point into `point`. Empty on success, else what is wrong with it.
 std::string TakePoint(const Json& value, JointTrajectory::Point* point) {
   if (!value.is_object() || !value.contains("positions") || !value.contains("time_from_start")) {
     return "has a point without positions or time_from_start";
@@ -258,7 +259,7 @@ std::string TakePoint(const Json& value, JointTrajectory::Point* point) {
   return {};
 }
 
-// The same of the names of joints.
+// The same, for the names of joints.
 std::string TakeJoints(const Json& value, std::span<const std::string> joints,
                        std::vector<std::size_t>* places) {
   if (!value.is_array()) return "has joints that are not a list of names";
@@ -279,7 +280,7 @@ std::string TakeJoints(const Json& value, std::span<const std::string> joints,
   return {};
 }
 
-// And of one key of a trajectory.
+// The same, for one key of a trajectory.
 std::string TakePart(const std::string& key, const Json& value, std::span<const std::string> joints,
                      JointTrajectory* trajectory) {
   if (key == "joints") return TakeJoints(value, joints, &trajectory->joints);

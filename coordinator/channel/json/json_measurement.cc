@@ -112,7 +112,7 @@ struct Encode {
     json.AddRaw("touches", contact.is_touching ? "true" : "false");
   }
 
-  // JSON has no infinity: what is too far is null, and what is too near is 0.
+  // JSON has no infinity: a range that is too far is null, and a range that is too near is 0.
   static double InJson(double range_m) { return range_m < 0 && std::isinf(range_m) ? 0 : range_m; }
   static std::vector<double> InJson(std::vector<double> ranges_m) {
     for (double& range_m : ranges_m) range_m = InJson(range_m);

@@ -1,4 +1,4 @@
-// What sensors of robots measure, as JSON (docs/SCENARIO.md).
+// Measurements of robots' sensors, as JSON (docs/SCENARIO.md).
 #pragma once
 
 #include <string>

@@ -11,7 +11,7 @@
 namespace tcs {
 namespace {
 
-// Whether it stands for itself in a JSON string. Names of frames are made of such letters.
+// Whether the letter stands for itself in a JSON string. Names of frames are made of such letters.
 bool IsPlain(char letter) {
   return letter >= ' ' && letter <= '~' && letter != '"' && letter != '\\';
 }

@@ -21,7 +21,7 @@ void AppendList(std::span<const double> values, std::string& text);
 class JsonObject {
  public:
   JsonObject() = default;
-  // Its first key is "time".
+  // An object whose first key is "time".
   explicit JsonObject(VirtualTime at);
 
   void Add(std::string_view key, double value);

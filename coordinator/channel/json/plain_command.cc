@@ -20,7 +20,7 @@ class Reader {
     text_.remove_prefix(what.size());
     return true;
   }
-  // Of a key or a text without escapes.
+  // Takes a key or a text without escapes.
   std::optional<std::string_view> TakeText() {
     if (!Take("\"")) return std::nullopt;
     const std::size_t end = text_.find_first_of("\"\\");
@@ -62,7 +62,7 @@ class Reader {
     text_.remove_prefix(first == std::string_view::npos ? text_.size() : first);
   }
 
-  // Of JSON's numbers; from_chars takes others, too: nan, 01, .5.
+  // The length of a JSON number; from_chars takes others, too: nan, 01, .5.
   std::size_t NumberLength(bool* is_whole) const {
     std::size_t at = 0;
     const auto is = [&](char c) { return at < text_.size() && text_[at] == c; };

@@ -13,8 +13,8 @@
 
 namespace tcs {
 
-// What DecodeCommand gives for {"force":[x,y,z],"torque":[x,y,z]}, with any blanks and in either
-// order, either left out. None for all that is written otherwise, which may be a command all the
+// The wrench that DecodeCommand gives for {"force":[x,y,z],"torque":[x,y,z]}, with any blanks and
+// in either order, either key left out. None for any other text, which may be a command all the
 // same: an escape in a key, a number beyond doubles.
 [[nodiscard]] std::optional<Wrench> ReadPlainCommand(std::string_view text);
 

@@ -36,7 +36,8 @@ class PtyChannels::Device {
     return to_program_.TimeOf(static_cast<std::int64_t>(bytes));
   }
 
-  // Sends the line from `now` on, or when the line is free. When its last bit has come.
+  // Sends the text `line` from `now` on, or when the serial line is free. Returns the time at which
+  // the text's last bit has come.
   VirtualTime Send(const std::string& line, VirtualTime now) {
     const auto fifo = static_cast<std::size_t>(port_.fifo);
     for (std::size_t i = 0; i < line.size(); i += fifo) {
@@ -51,7 +52,7 @@ class PtyChannels::Device {
     return on_the_way_.Arrive(now, [this](const std::string& bytes) { terminal_.Write(bytes); });
   }
 
-  // A byte that a program writes at `now` has gone when?
+  // The time at which a byte that a program writes at `now` has gone.
   VirtualTime Gone(VirtualTime now) { return from_program_.Send(now); }
 
   bool takes_commands = false;
@@ -165,7 +166,7 @@ class PtyChannels::DeviceInlet final : public Inlet {
 
   Device& device_;
   const std::optional<std::size_t> channel_;
-  std::string line_;  // what has come of it
+  std::string line_;  // the part that has come
   bool has_warned_ = false;
 };
 

@@ -31,7 +31,7 @@ class PtyChannels final : public Transport {
   Opened<Outlet> OutletOn(const SerialPort& port, const SensorChannelSpec& spec);
   // For the scenario's channel of commands of that number; at most once for each device.
   Opened<Inlet> InletOn(const SerialPort& port, std::size_t channel);
-  // For devices without such a channel: what programs write there is thrown away.
+  // For devices without such a channel: bytes that programs write there are thrown away.
   std::vector<std::unique_ptr<Inlet>> OtherInlets() const;
 
   std::vector<FileAlias> Aliases() const;
@@ -40,7 +40,7 @@ class PtyChannels final : public Transport {
   class Device;
   class DeviceOutlet;
   class DeviceInlet;
-  // Or one sentence.
+  // The port's device, or one sentence.
   [[nodiscard]] std::variant<Device*, std::string> Find(const SerialPort& port);
 
   std::map<std::pair<std::string, std::string>, std::unique_ptr<Device>> devices_;

@@ -12,8 +12,9 @@ class SerialLine {
   // `bits` of a byte with all that frames it: 10 for 8N1.
   SerialLine(int bits, int baud) : bits_(bits), baud_(baud) {}
 
-  // One more byte, which is there to be sent at `from`: when its last bit has gone, in whole
-  // nanoseconds rounded up. Bytes that follow each other do not add up what is rounded.
+  // Sends one more byte, which is there to be sent at `from`. Returns the time at which the byte's
+  // last bit has gone, in whole nanoseconds rounded up. Bytes that follow each other do not add up
+  // their rounding.
   VirtualTime Send(VirtualTime from) {
     if (from >= free_) {
       burst_ = from;
@@ -28,7 +29,7 @@ class SerialLine {
            VirtualDuration::Nanoseconds((rest_ns + baud_ - 1) / baud_);
   }
 
-  // When all that it was given has gone.
+  // The time at which all bytes that were given to the line have gone.
   VirtualTime free_at() const { return free_; }
 
  private:

@@ -17,7 +17,8 @@
 namespace tcs {
 namespace {
 
-// A pause apart: where the terminal may swallow some of the bytes, and where all are sure to come.
+// The most looks, a pause apart: where the terminal may swallow some of the bytes, and where all
+// bytes are sure to come.
 constexpr int kMostLooks = 200, kMostSureLooks = 40'000;
 constexpr long kPauseNs = 50'000;
 constexpr int kRoom = 4095;  // of the line discipline
@@ -64,7 +65,7 @@ void MakeRaw(int fd, int baud) {
   ioctl(fd, TCSETS2, &settings);
 }
 
-// Each byte is there to be read: none is a signal, stops the flow or ends a line.
+// True if each byte is there to be read: no byte is a signal, stops the flow or ends a line.
 bool KeepsAll(const termios2& settings) {
   return (settings.c_lflag & (ICANON | ISIG)) == 0 &&
          (settings.c_iflag & (IXON | IGNCR | PARMRK)) == 0;
@@ -91,15 +92,15 @@ std::variant<Terminal, std::string> Terminal::Open(int baud) {
   return Terminal(std::move(far), std::move(near), std::move(path));
 }
 
-// A poll waits for the kernel's worker, but only where nothing is there to be read yet. Beside what
-// nobody has read the bytes are counted until they are all there; where programs read whole lines,
-// they are counted by lines. On a busy host the worker may take long.
+// A poll waits for the kernel's worker, but only where nothing is there to be read yet. Where older
+// bytes are still unread, the new bytes are counted until they are all there; where programs read
+// whole lines, bytes are counted by lines. On a busy host the worker may take long.
 void Terminal::Write(std::string_view bytes) const {
   termios2 settings{};
   ioctl(near_.get(), TCGETS2, &settings);
   const bool by_lines = (settings.c_lflag & ICANON) != 0;
   const int before = Unread(near_.get());
-  // More the kernel would keep elsewhere, out of everybody's sight.
+  // The kernel would keep more bytes elsewhere, where no process sees them.
   if (before + static_cast<int>(bytes.size()) > kRoom) return;
   const ssize_t written = write(far_.get(), bytes.data(), bytes.size());
   if (written <= 0) return;

@@ -21,7 +21,7 @@ bool Has(const SensorChannelSpec& spec, SensorField field) {
   return std::ranges::find(spec.fields, field) != spec.fields.end();
 }
 
-// As the channel carries it.
+// The body's state as the channel carries it.
 BodyState Carried(const SensorChannelSpec& spec, BodyState state) {
   const auto keep = [&spec](SensorField field, auto* numbers) {
     if (!Has(spec, field)) numbers->fill(std::numeric_limits<double>::quiet_NaN());
@@ -104,10 +104,10 @@ class ChannelRecords::WrappedOutlet final : public Outlet {
   ChannelRecords& records_;
   const SensorChannelSpec& spec_;
   std::unique_ptr<Outlet> outlet_;
-  std::vector<Topic> states_, felt_;  // of each body; the first of whatever else it is
+  std::vector<Topic> states_, felt_;  // of each body; other sensors use the first
 };
 
-// Stands between an inlet and who is given its commands.
+// Stands between an inlet and the sink that gets its commands.
 class ChannelRecords::Listener final : public CommandSink {
  public:
   Listener(ChannelRecords& records, std::vector<Topic>& topics, CommandSink& sink)
@@ -146,7 +146,7 @@ class ChannelRecords::Listener final : public CommandSink {
   template <class Make>
   void Note(std::size_t channel, VirtualTime sent, dds::CommandMessage type, Make make) {
     const CommandChannelSpec& spec = records_.scenario_.commands[channel];
-    // What comes in on DDS is recorded there.
+    // Commands that come in on DDS are recorded there.
     if (records_.sink_ == nullptr || std::holds_alternative<DdsCommandEnd>(spec.from)) return;
     if (topics_.size() <= channel) topics_.resize(channel + 1);
     records_.Write(&topics_[channel], TopicOf(spec.name), dds::NameOf(type), sent,

@@ -1,6 +1,6 @@
-// What goes over the channels that are not on DDS, as ROS 2 messages in the run's recording: each
-// reading when it arrives, each command when it was sent. Outlets and inlets are wrapped; they do
-// what they did.
+// Records the readings and commands on channels that are not on DDS, as ROS 2 messages in the run's
+// recording: each reading when it arrives, each command when it was sent. Outlets and inlets are
+// wrapped, and do what they did.
 //
 // The topics of a channel:
 //   /channels/NAME         what its sensor of one body, of joints or of its own reads; its commands
@@ -35,7 +35,7 @@ class ChannelRecords {
   std::unique_ptr<Outlet> Wrap(std::size_t sensor, std::unique_ptr<Outlet> outlet);
   std::unique_ptr<Inlet> Wrap(std::unique_ptr<Inlet> inlet);
 
-  // From now on; it outlives this.
+  // Records from now on; the sink outlives this.
   void RecordInto(record::MessageSink& sink) { sink_ = &sink; }
 
  private:

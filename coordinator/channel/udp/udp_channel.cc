@@ -26,7 +26,7 @@ class UdpSender final : public DatagramSender {
     return !socket_.SendTo(to_, datagram).has_value();
   }
   shm::ReceiverAddress To() const override { return KernelAddressOf(to_); }
-  // To have been bound once is enough.
+  // It is enough that the address has been bound once.
   bool IsHeard() override { return is_heard_ = is_heard_ || IsListenedTo(to_); }
   std::string WhyUnheard() const override {
     if (IsListenedTo(to_)) return {};

@@ -142,7 +142,7 @@ bool IsListenedTo(const UdpEndpoint& endpoint) {
       const std::size_t colon = local.find(':');
       if (colon == std::string::npos) continue;
       if (std::stoul(local.substr(colon + 1), nullptr, 16) != endpoint.port) continue;
-      // Of sockets of the other family it is enough that the port is theirs.
+      // For a socket of the other family it is enough that it has the port.
       if (v6) return true;
       const unsigned long host = std::stoul(local.substr(0, colon), nullptr, 16);
       if (host == 0 || host == address->sin_addr.s_addr) return true;

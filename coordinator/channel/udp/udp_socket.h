@@ -1,7 +1,7 @@
 // A non-blocking IPv4 UDP socket.
 //
-// Owns its descriptor, which is close-on-exec; movable. One thread at a time. Failures that a user
-// can mend come back as sentences.
+// Owns its descriptor, which is close-on-exec; movable. Used by one thread at a time. Failures that
+// a user can mend come back as sentences.
 #pragma once
 
 #include <optional>
@@ -33,7 +33,7 @@ class UdpSocket {
   // A socket for sending only; its port is the kernel's choice.
   [[nodiscard]] static std::variant<UdpSocket, SocketError> ForSending();
 
-  // For epoll; stays the socket's.
+  // The descriptor, for epoll; it stays the socket's.
   int fd() const { return fd_.get(); }
   // The address it is bound to; port 0 before the first send of a socket for sending.
   UdpEndpoint LocalEndpoint() const;
@@ -55,7 +55,7 @@ class UdpSocket {
 // this machine to know.
 [[nodiscard]] bool IsListenedTo(const UdpEndpoint& endpoint);
 
-// As the kernel has it.
+// The endpoint's address as the kernel has it.
 shm::ReceiverAddress KernelAddressOf(const UdpEndpoint& endpoint);
 
 }  // namespace tcs

@@ -20,7 +20,7 @@ struct Address {
   sockaddr_un name{};
   socklen_t size = 0;
 
-  // It fits: the scenario's loader has seen to that.
+  // The name fits: the scenario's loader has seen to that.
   explicit Address(const UnixName& of) {
     name.sun_family = AF_UNIX;
     memcpy(name.sun_path + (of.is_abstract ? 1 : 0), of.name.data(), of.name.size());
@@ -57,7 +57,7 @@ std::string CannotBind(const UnixName& name, int error) {
   }
 }
 
-// Of a run that has ended without taking it along. 0, or an errno.
+// Removes the file of a run that has ended without removing it. 0, or an errno.
 int RemoveStale(const UnixName& name) {
   struct stat status;
   if (lstat(name.name.c_str(), &status) != 0) return errno;
@@ -110,10 +110,10 @@ bool UnixSocket::SendTo(const UnixName& to, std::string_view payload) {
   return sent >= 0;
 }
 
-// Mostly one has come, and one call takes it and finds that there is no second one.
+// Mostly one datagram has come, and one call takes it and finds that there is no second one.
 std::vector<std::string> UnixSocket::ReceiveAll() {
   constexpr std::size_t kAtOnce = 2;
-  // The kernel touches of it what it fills.
+  // The kernel touches only the part of the room that it fills.
   thread_local const auto room = std::make_unique_for_overwrite<char[]>(kAtOnce * kLongest);
   std::vector<std::string> all;
   for (;;) {
@@ -134,7 +134,7 @@ std::vector<std::string> UnixSocket::ReceiveAll() {
   }
 }
 
-// To be connected to is nothing that whoever has the name notices.
+// The process that has the name does not notice that a socket connects to it.
 bool IsListenedTo(const UnixName& name) {
   auto opened = OpenSocket();
   if (std::holds_alternative<std::string>(opened)) return true;

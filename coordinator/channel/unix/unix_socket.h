@@ -1,8 +1,8 @@
 // A non-blocking UNIX datagram socket, and the file that it has.
 //
-// Owns its descriptor, which is close-on-exec, and the file: it is removed with the socket, and by
-// the keeper if this process is killed (os/guardian.h). Movable. One thread at a time. Failures
-// that a user can mend come back as sentences.
+// Owns its descriptor, which is close-on-exec, and the file: the file is removed with the socket,
+// and by the keeper if this process is killed (os/guardian.h). Movable. Used by one thread at a
+// time. Failures that a user can mend come back as sentences.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ class UnixSocket {
   UnixSocket& operator=(UnixSocket&&) = delete;
   ~UnixSocket();
 
-  // For epoll; stays the socket's.
+  // The descriptor, for epoll; it stays the socket's.
   int fd() const { return fd_.get(); }
 
   // Sends one datagram without waiting. False if no program has bound the name, or it has no room:
@@ -47,13 +47,13 @@ class UnixSocket {
   explicit UnixSocket(UniqueFd fd) : fd_(std::move(fd)) {}
 
   UniqueFd fd_;
-  std::string file_;  // its path; empty: it has none
+  std::string file_;  // the file's path; empty: there is no file
 };
 
 // Whether some socket gets what is sent to `name`.
 [[nodiscard]] bool IsListenedTo(const UnixName& name);
 
-// As the kernel has it.
+// The address of the name as the kernel has it.
 shm::ReceiverAddress KernelAddressOf(const UnixName& name);
 
 }  // namespace tcs

@@ -1,4 +1,4 @@
-// What tcsim itself exits with; `exec` otherwise passes on its program's own status.
+// The exit statuses of tcsim itself; `exec` otherwise passes on its program's own status.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@ std::string Joined(const std::vector<std::string>& words, const char* between = 
   return text;
 }
 
-// The commands that run another program: what comes behind their arguments is that program's.
+// The commands that run another program: the words behind their arguments are that program's.
 bool RunsAnother(const DescribedCommand& command) {
   return !command.arguments.empty() && command.arguments[0].names[0] == "command";
 }
@@ -23,7 +23,7 @@ std::string LongOptions(const DescribedCommand& command) {
   return Joined(names);
 }
 
-// A case of bash for what may follow an option; empty where nothing is known of it.
+// A case of bash for what may follow an option; empty where nothing is known of the option's value.
 std::string BashValues(const DescribedOption& option) {
   std::string complete;
   if (!option.choices.empty()) {
@@ -163,7 +163,7 @@ std::string ZshCompletion(const DescribedCommand& program) {
       "    argument)\n"
       "      case $line[1] in\n";
   for (const DescribedCommand& sub : program.commands) {
-    // -S: what is behind "--" is no option, and "--" no program.
+    // -S: a word behind "--" is no option, and "--" no program.
     text += fmt::format("        {})\n      _arguments -S \\\n{}          ;;\n", sub.name,
                         ZshSpecs(sub));
   }

@@ -1,4 +1,4 @@
-// What bash and zsh complete.
+// The completions of tcsim's command line for bash and zsh.
 #pragma once
 
 #include <string>

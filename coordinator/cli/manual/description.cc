@@ -49,7 +49,7 @@ DescribedOption DescribeOption(const CLI::Option& option) {
         described.value += (described.value.empty() ? "" : "|") + choice;
       }
     }
-    // Only the type itself: what values it may have is said in words.
+    // Only the type itself: the text says in words which values the type may have.
     if (described.value.empty()) described.value = type.substr(0, type.find_first_of(": ("));
     if (described.value.empty()) described.value = "VALUE";
   } else {

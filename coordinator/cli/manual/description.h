@@ -1,10 +1,10 @@
-// What the command line says of itself, read from CLI11's tree: the one source of `--help`, the
+// The command line's description of itself, read from CLI11's tree: the one source of `--help`, the
 // manual pages and the shells' completions. An option is described once, where it is added.
 //
 // The text of an option or an argument may begin with the name of its value in capitals and a
 // colon, such as "FILE: a piece of a scenario"; else the value's name is what CLI11 calls its type.
-// FILE and FOLDER are completed as such by the shells. A command's footer is its examples, as
-// pairs of lines: the command line, and what it is for.
+// FILE and FOLDER are completed as such by the shells. A command's footer is its examples, as pairs
+// of lines: the command line, and what it is for.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct DescribedOption {
   std::string value;                 // the value's name; empty: takes none
   std::vector<std::string> choices;  // of the value; empty: anything
   std::string text;                  // a sentence without a full stop
-  std::string unless_told;           // the value that it has by itself; empty: not said
+  std::string unless_told;           // the option's default value; empty: not said
   bool is_required = false;
   bool repeats = false;
 };
@@ -37,7 +37,8 @@ struct DescribedCommand {
   std::vector<DescribedCommand> commands;
 };
 
-// What is in no group is not for people, and left out.
+// Describes the program with its commands. An option or a command in no group is not for people,
+// and left out.
 [[nodiscard]] DescribedCommand Describe(const CLI::App& app);
 
 // "tcsim run [OPTIONS] [scenario]"; `parent`: the name of the program, empty for the program.

@@ -50,7 +50,7 @@ class Writer {
   }
 
   void Example(const DescribedExample& example) {
-    // What is too long is continued as a shell takes it.
+    // A command line that is too long is continued as a shell takes it.
     std::string command;
     for (const std::string& part : Wrapped(example.line, width_ - 2 * kIndent - 2)) {
       command += command.empty() ? part : " \\\n" + std::string(2 * kIndent, ' ') + part;

@@ -14,7 +14,7 @@ class FormatterBase;
 namespace tcs {
 
 struct HelpStyle {
-  std::size_t columns = 80;  // that lines may have; 40 at least are used
+  std::size_t columns = 80;  // the most that a line may have; 40 at least are used
   bool is_coloured = false;
 };
 
@@ -22,8 +22,8 @@ struct HelpStyle {
 [[nodiscard]] std::string HelpText(const DescribedCommand& command, const std::string& parent,
                                    const HelpStyle& style);
 
-// What CLI11 asks for help: for stdout as it is, a terminal of that width or a file. Colours obey
-// NO_COLOR.
+// The formatter that CLI11 asks for help: for stdout as it is, a terminal of that width or a file.
+// Colours obey NO_COLOR.
 [[nodiscard]] std::shared_ptr<CLI::FormatterBase> HelpFormatter();
 
 }  // namespace tcs

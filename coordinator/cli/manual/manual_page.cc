@@ -6,7 +6,7 @@ namespace tcs {
 
 namespace {
 
-// Text as man takes it for itself: its escapes, and lines that would be its commands.
+// Escapes text that man would take for itself: escapes, and lines that would be man's commands.
 std::string Escaped(const std::string& text) {
   std::string escaped;
   for (const char c : text) {

@@ -70,13 +70,14 @@ bool QueuedJob::IsAlive() const {
 }
 
 std::vector<std::string> SubmitWords(const SubmitRequest& request) {
-  std::vector<std::string> words{
-      "sbatch", "--parsable", "--job-name=" + request.name,
-      fmt::format("--array=0-{}", request.jobs - 1), "--output=/dev/null",
-      // What is lost is named, and asked for again, by tcsim.
-      "--no-requeue", "--ntasks=1",
-      // Its own is not always there on a node; the job goes there itself.
-      "--chdir=/"};
+  std::vector<std::string> words{"sbatch", "--parsable", "--job-name=" + request.name,
+                                 fmt::format("--array=0-{}", request.jobs - 1),
+                                 "--output=/dev/null",
+                                 // tcsim itself names what is lost, and asks for it again.
+                                 "--no-requeue", "--ntasks=1",
+                                 // The caller's own folder is not always there on a node; the job
+                                 // changes to its folder itself.
+                                 "--chdir=/"};
   if (request.whole_cores) words.emplace_back("--hint=nomultithread");
   if (!request.excluded_nodes.empty()) {
     words.push_back(fmt::format("--exclude={}", fmt::join(request.excluded_nodes, ",")));

@@ -7,7 +7,7 @@
 
 namespace tcs {
 
-// One job of an array.
+// A job of an array.
 struct QueuedJob {
   std::string id;            // "12_3"
   std::string state;         // as Slurm names it: "RUNNING", "NODE_FAIL"
@@ -15,19 +15,19 @@ struct QueuedJob {
   int wait_status = 0;       // as of waitpid
 
   bool IsPending() const;
-  // It has not ended yet.
+  // True while the job has not ended.
   bool IsAlive() const;
 };
 
-// What the jobs of a call exit with, besides 0.
-inline constexpr int kFolderNotShared = 66;  // it does not see the folder that it is to work in
-inline constexpr int kJobCannotRun = 67;     // it has left the reason in its work folder
-inline constexpr int kRunWasKilled = 68;     // a run was, as by the kernel when memory ran out
+// The exit statuses of a call's jobs, besides 0.
+inline constexpr int kFolderNotShared = 66;  // the job does not see the folder of its work
+inline constexpr int kJobCannotRun = 67;     // the job has left the reason in its work folder
+inline constexpr int kRunWasKilled = 68;     // a run was killed, as by the kernel if memory ran out
 
 struct SubmitRequest {
   std::string name;    // of the jobs
   std::string tcsim;   // the program's path
-  std::string folder;  // of the work
+  std::string folder;  // the folder of the work
   int jobs = 1;
   bool whole_cores = false;
   std::vector<std::string> excluded_nodes;
@@ -42,7 +42,7 @@ std::string WhyNotForSbatch(const std::string& option);
 std::vector<std::string> QueueWords(const std::string& name, unsigned user);
 std::vector<std::string> CancelWords(const std::string& name, unsigned user);
 
-// What the command of QueueWords has printed; by id.
+// The jobs in the output of the command of QueueWords, by id.
 std::map<std::string, QueuedJob> ParseQueue(const std::string& text);
 
 // How large an array may be, from `scontrol show config`; Slurm's own default if that does not say.

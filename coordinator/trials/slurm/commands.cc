@@ -48,7 +48,7 @@ struct Pipe {
   _exit(kNotFound);
 }
 
-// False at its end.
+// False at the end of what `fd` has.
 bool ReadSome(int fd, std::string* text) {
   char block[65536];
   const ssize_t n = read(fd, block, sizeof block);

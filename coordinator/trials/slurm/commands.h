@@ -9,14 +9,14 @@ namespace tcs {
 struct CommandResult {
   bool is_found = true;  // in PATH
   bool succeeded = false;
-  std::string out, said;  // its stdout, and its stderr
+  std::string out, said;  // stdout, and stderr
 };
 
-// Runs it to its end, for a minute at most. It gets the signals of the terminal. The calling
-// process must be single-threaded.
+// Runs the command to its end, for a minute at most. The command gets the signals of the terminal.
+// The calling process must be single-threaded.
 CommandResult RunSlurmCommand(const std::vector<std::string>& words);
 
-// The sentence out of what one of them says on stderr, as "Invalid partition name specified" out of
+// The sentence out of what a command says on stderr, as "Invalid partition name specified" out of
 // "sbatch: error: Batch job submission failed: Invalid partition name specified".
 std::string SlurmsReason(const std::string& said);
 

@@ -12,7 +12,7 @@ namespace tcs {
 
 namespace {
 
-// By Slurm, or by the shell that its script is for.
+// True if Slurm, or the shell that its script is for, replaces the variable.
 bool IsReplaced(std::string_view name) {
   constexpr std::array<std::string_view, 7> kNames{"ENVIRONMENT", "HOSTNAME", "OLDPWD", "PWD",
                                                    "SHLVL",       "TMPDIR",   "_"};

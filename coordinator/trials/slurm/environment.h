@@ -1,5 +1,5 @@
 // Trials on a node have the environment that their caller had, with nothing of Slurm's in it: what
-// a program allocates depends on it, and under fixed accounting that takes time.
+// a program allocates depends on its environment, and under fixed accounting allocations take time.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace tcs {
 
-// Of this process.
+// The environment of this process.
 std::vector<SlurmVariable> ReadEnvironment();
 
-// This process's environment is that one from now on, in the same order; what it does not have of
-// it stays unset.
+// Makes `environment` that of this process, in the same order. A variable that comes without a
+// value, and that this process does not have, stays unset.
 void TakeEnvironment(const std::vector<SlurmVariable>& environment);
 
 }  // namespace tcs

@@ -33,7 +33,8 @@ constexpr std::int64_t kTakesTrialsForNs = 300'000'000'000;
 constexpr int kStopped = 128 + SIGTERM;  // as a shell says it
 constexpr int kTellsEveryMs = 2000;
 constexpr int kSlurmLookMs = 200;
-// Who ends a job sends the signal to all its processes, and the run's clients may be the first.
+// The signal that ends a job goes to all processes of the job, and the run's clients may be the
+// first.
 constexpr int kSignalIsLateByMs = 1000;
 
 std::string FromEnvironment(const char* name) {
@@ -41,10 +42,10 @@ std::string FromEnvironment(const char* name) {
   return value != nullptr ? value : "";
 }
 
-// Of the CPUs that Slurm has bound the job to the run claims one. Where Slurm binds nobody, those
-// are all of the node, and as many jobs as there are CPUs share them. A run that may use several
-// leaves the first one to the rest of the machine (os/cpu_claim.h): so who finds only that one free
-// is to use it, and everybody else takes whichever becomes free.
+// The run claims one of the CPUs that Slurm has bound the job to. Where Slurm binds no jobs, those
+// are all CPUs of the node, and as many jobs as there are CPUs share them. A run that may use
+// several CPUs leaves the first one to the rest of the machine (os/cpu_claim.h): so a job that
+// finds only that one free is to use it, and every other job takes whichever becomes free.
 cpu_set_t CpusForRun() {
   cpu_set_t cpus;
   CPU_ZERO(&cpus);
@@ -62,7 +63,7 @@ cpu_set_t CpusForRun() {
   return cpus;
 }
 
-// What the run said of the folder that it wrote to is to be true of the one that it becomes.
+// The log names the folder that the run wrote to; it is to name the folder that this one becomes.
 void RenameInLog(const std::string& log, const std::string& from, const std::string& to) {
   std::string text = ReadText(log);
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
@@ -80,7 +81,7 @@ class SlurmJob {
 
  private:
   std::optional<std::size_t> ClaimNext();
-  // 0, or what the job exits with.
+  // 0, or the job's exit status.
   int RunTrial(std::size_t index);
   int EndTrial(std::size_t index, const std::string& run, int status);
   bool IsStopped(int wait_ms);
@@ -89,7 +90,7 @@ class SlurmJob {
   const SlurmWorkFolder folder_;
   const SlurmWork work_;
   const Claim self_;
-  const std::size_t first_;  // where it begins to look for a trial
+  const std::size_t first_;  // where the job begins to look for a trial
   bool own_network_ = false;
   StopSignals stop_;
 };
@@ -180,7 +181,7 @@ int SlurmJob::EndTrial(std::size_t index, const std::string& run, int status) {
   const std::string log = run + "/tcsim.log";
   if (!ReadOutcome(run, trial.seed).has_value()) {
     if (IsStopped(kSignalIsLateByMs)) return kStopped;
-    // Memory ran out, or somebody has killed it: that says nothing about the trial.
+    // Memory ran out, or somebody has killed the run: the signal says nothing about the trial.
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) return kRunWasKilled;
     if (LastWords(ReadText(log)).empty()) {
       const std::string how = WIFSIGNALED(status)

@@ -38,9 +38,10 @@ constexpr int kMostJobs = 1000;
 // Between two looks: a second, and later a thirtieth of the time that has passed, up to ten
 // seconds.
 constexpr std::int64_t kLeastLookNs = 1'000'000'000, kMostLookNs = 10'000'000'000;
-// What a job has written before its end may reach another machine later than the news of its end.
+// A file that a job has written before its end may reach another machine later than the news of
+// that end.
 constexpr std::int64_t kFilesAreLateNs = 20'000'000'000;
-// Then a user wants to know why nothing happens.
+// After so long without a running trial a user wants to know why nothing happens.
 constexpr std::int64_t kIdleNs = 60'000'000'000;
 // The jobs are told to end, and Slurm takes a moment; the caller is killed after 15 s.
 constexpr std::int64_t kEndWithinNs = 10'000'000'000;
@@ -71,8 +72,8 @@ class Sweep {
   struct State {
     bool has_ended = false;
     int lost = 0;
-    std::int64_t running_since_ns = 0;  // 0: it does not run
-    std::int64_t gone_since_ns = 0;     // its job has, and its result is not seen
+    std::int64_t running_since_ns = 0;  // 0: the trial does not run
+    std::int64_t gone_since_ns = 0;     // since when its job is gone, without a result seen
   };
 
   std::string Prepare();
@@ -106,17 +107,17 @@ class Sweep {
   int ended_ = 0, claimed_ = 0;
   std::map<std::string, QueuedJob> queue_;
   std::int64_t queue_unknown_since_ns_ = 0;
-  std::int64_t idle_since_ns_ = 0;  // no trial runs
+  std::int64_t idle_since_ns_ = 0;  // since when no trial runs
   bool said_unknown_ = false, said_idle_ = false;
   std::vector<std::string> bad_nodes_;
-  std::string bad_news_;  // of the first of them
+  std::string bad_news_;  // about the first of these nodes
   // How the last job that ran nothing has ended.
   std::string last_gone_ = "the queue does not know it any more";
   std::set<std::string> seen_gone_;
   int most_jobs_ = 0;
   int vain_calls_ = 0;
-  bool has_asked_ = false;  // Slurm for jobs
-  bool has_begun_ = true;   // a trial, since jobs were asked for
+  bool has_asked_ = false;  // jobs were asked for
+  bool has_begun_ = true;   // a trial has begun since jobs were asked for
   TrialsProgress progress_;
   LauncherReport report_;
   const std::int64_t start_ns_ = Now();
@@ -169,7 +170,7 @@ const QueuedJob* Sweep::Find(const std::string& job) const {
   return found == queue_.end() ? nullptr : &found->second;
 }
 
-// As many jobs as there are trials without one, as far as they are not there already.
+// Asks for as many jobs as there are trials without one, less the jobs that are there already.
 void Sweep::Submit() {
   if (queue_unknown_since_ns_ != 0) return;
   const int wanted = std::min(most_jobs_, Unended()), alive = Alive();
@@ -197,7 +198,7 @@ void Sweep::Submit() {
   TakeSignal();
   if (report_.interrupted) return;
   if (result.succeeded) {
-    // Until the queue is asked.
+    // These entries stand in until the queue is asked.
     const std::string array = result.out.substr(0, result.out.find_first_of(";\n"));
     for (int i = 0; i < request.jobs; ++i) {
       QueuedJob job;
@@ -223,7 +224,7 @@ void Sweep::Submit() {
                             reason);
 }
 
-// False if it does not answer: the queue is as it was seen last.
+// False if squeue does not answer: queue_ stays as it was seen last.
 bool Sweep::LookAtQueue() {
   const CommandResult result = RunSlurmCommand(QueueWords(name_, user_));
   if (result.succeeded) {
@@ -329,7 +330,7 @@ void Sweep::Lose(std::size_t index, const Claim& claim, const std::string& why) 
                   why));
 }
 
-// Nodes on which jobs end before they have run anything. No more are sent there.
+// Finds nodes on which jobs end before they have run anything. Such a node gets no more jobs.
 void Sweep::LookForBadNodes() {
   for (const auto& [id, job] : queue_) {
     if (job.IsAlive() || job.state == "COMPLETED" || !seen_gone_.insert(id).second) continue;

@@ -4,7 +4,8 @@
 //
 // Jobs take one trial after the other, so that short trials do not each pay for a job's start, and
 // a sweep has any number of trials, whatever the largest array is. The launcher looks at the folder
-// for what is done, and asks squeue for jobs that are gone. It needs no accounting database.
+// for what is done, and asks squeue for jobs that are gone. The launcher needs no accounting
+// database.
 #pragma once
 
 #include <string>
@@ -20,7 +21,7 @@ struct SlurmOptions {
   bool in_host_network = false;      // trials of one node come one after the other
   std::vector<std::string> options;  // for sbatch
   std::string tcsim;                 // the program, at the same path on all nodes
-  std::string version;               // its version
+  std::string version;               // the program's version
 };
 
 class SlurmLauncher final : public Launcher {

@@ -1,6 +1,8 @@
-// A sensor of a robot that is a model: when it looks at the world, and what it makes of that.
+// A sensor of a robot that is a model: when it looks at the world, and which measurement it makes
+// of that.
 //
-// It neither moves the dynamics nor knows what carries what it measures, and draws no noise.
+// The sensor neither moves the dynamics nor knows what carries its measurements, and draws no
+// noise.
 #pragma once
 
 #include <functional>
@@ -13,7 +15,8 @@
 
 namespace tcs {
 
-// How links and joints of the world are at the instant; as many states as are asked for.
+// Functions that read the states of links and joints of the world at the instant; as many states as
+// are asked for.
 using ReadLinks = std::function<void(std::span<const int> links, std::span<LinkState> states)>;
 using ReadJoints = std::function<void(std::span<const int> joints, std::span<JointState> states)>;
 struct Eyes {
@@ -25,22 +28,23 @@ class Instrument {
  public:
   virtual ~Instrument() = default;
 
-  // A sample takes so many looks: the first one at its beginning, the others as long after the one
-  // before.
+  // A sample takes `count` looks: the first one at the sample's beginning, each other one `apart`
+  // after the one before.
   struct Looks {
     int count = 1;
     VirtualDuration apart{};
   };
   virtual Looks looks() const { return {}; }
-  // The links that it asks for in a look, so that all that are due can be read at once.
+  // The links that the sensor asks for in a look, so that all links that are due can be read at
+  // once.
   virtual std::span<const int> links() const { return {}; }
   // The look of that number, counted from 0, at `now`.
   virtual void Look(int number, VirtualTime now, const Eyes& eyes) = 0;
-  // What came out of it, once all looks are taken.
+  // The measurement, once all looks are taken.
   virtual Measurement Finish() = 0;
 };
 
-// Of a sensor that takes a sample each `period`. The world outlives it.
+// The instrument of a sensor that takes a sample each `period`. The world outlives the instrument.
 std::unique_ptr<Instrument> MakeInstrument(const InstrumentSpec& spec, VirtualDuration period,
                                            const WorldSpec& world);
 

@@ -37,8 +37,8 @@ class Lidar3d final : public Instrument {
   CloudMeasurement measured_;
 };
 
-// A distance as a sensor tells it: what is beyond its reach is at infinity, what is before at minus
-// infinity (REP-117).
+// A distance as a sensor tells it: infinity beyond the sensor's reach, minus infinity before it
+// (REP-117).
 double WithinReach(double distance_m, const ReachSpec& reach);
 
 }  // namespace tcs

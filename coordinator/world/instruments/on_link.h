@@ -72,7 +72,7 @@ class Barometer final : public Instrument {
   PressureMeasurement measured_;
 };
 
-// In the standard atmosphere, so far above where it is `ground_pa`.
+// The pressure in the standard atmosphere, `height_m` above the place where it is `ground_pa`.
 double PressureAt(double height_m, double ground_pa);
 
 }  // namespace tcs

@@ -10,7 +10,7 @@ namespace tcs {
 
 class RaySweep {
  public:
-  // `columns` of them at even intervals in the time `sweep`.
+  // `columns` columns at even intervals in the time `sweep`.
   RaySweep(const Mount& mount, std::size_t columns, VirtualDuration sweep, const WorldSpec& world);
 
   Instrument::Looks looks() const { return looks_; }
@@ -18,7 +18,7 @@ class RaySweep {
   double column_s() const { return column_s_; }  // between two columns
 
   // A look of the instrument's: calls `cast` for each column that has its turn by then, with the
-  // world as it is at its instant.
+  // world as it is at the column's instant.
   using Cast = std::function<void(std::size_t column, const Seen& seen)>;
   void Look(int number, const Eyes& eyes, const Cast& cast);
 

@@ -1,5 +1,5 @@
-// What a sensor sees that takes its time: the world is read at some instants, and is in between
-// where its links' velocities say.
+// The view of a sensor whose sample takes time. The world is read at some instants; in between, its
+// links are where their velocities say.
 #pragma once
 
 #include <vector>
@@ -13,16 +13,16 @@ class Seen {
  public:
   Seen(const Mount& mount, const WorldSpec& world);
 
-  // Those that it reads.
+  // The links that Begin and GoOn read.
   std::span<const int> links() const { return links_; }
-  // The world as it is now; what was read before is forgotten.
+  // Reads the world as it is now; states that were read before are forgotten.
   void Begin(const Eyes& eyes);
-  // The same `after` the last look.
+  // Reads the world again, `after` the last look.
   void GoOn(VirtualDuration after, const Eyes& eyes);
-  // To the share `part` (0 to 1) of the time between the last two looks.
+  // Goes to the share `part` (0 to 1) of the time between the last two looks.
   void GoTo(double part);
 
-  // How far a ray goes that leaves the mount in that direction of its frame.
+  // How far a ray goes that leaves the mount in `direction` of the mount's frame.
   double Cast(const std::array<double, 3>& direction) const;
 
  private:

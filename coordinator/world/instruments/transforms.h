@@ -1,4 +1,4 @@
-// What a robot's state publisher tells: where its links are, and of which file it is.
+// The reports of a robot's state publisher: where the robot's links are, and of which file it is.
 #pragma once
 
 #include <utility>
@@ -17,7 +17,7 @@ class Transforms final : public Instrument {
 
  private:
   std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of places in `links_`
-  std::vector<int> links_;                                  // each once
+  std::vector<int> links_;                                  // each link once
   std::vector<LinkState> states_;                           // and the world's
   TransformsMeasurement measured_;
 };

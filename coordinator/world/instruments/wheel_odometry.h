@@ -1,4 +1,5 @@
-// Dead reckoning: what a robot's firmware makes of how far its wheels have turned.
+// Dead reckoning: the odometry that a robot's firmware computes from how far its wheels have
+// turned.
 #pragma once
 
 #include <optional>

@@ -10,8 +10,8 @@
 namespace tcs {
 namespace {
 
-// The lighter of two that touch would swing so fast on one point of contact; a weight on one sinks
-// in by g / kContactRadps^2.
+// The lighter of two bodies that touch would swing so fast on one point of contact; a weight on one
+// point sinks in by g / kContactRadps^2.
 constexpr double kContactRadps = 600;
 constexpr double kDampingRatio = 0.5;
 
@@ -62,7 +62,7 @@ void Contacts::Place(const SimTK::State& state) {
   }
 }
 
-// Of their nearest points towards each other, at the most.
+// The speed of the pair's nearest points towards each other, at the most.
 double Contacts::SpeedBetween(const SimTK::State& state, const Pair& pair) const {
   SimTK::Vec3 between(0);
   double turning = 0;

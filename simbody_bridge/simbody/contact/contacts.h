@@ -1,4 +1,4 @@
-// What touches what among the bodies of an island and the world's fixtures.
+// The contacts among the bodies of an island and the world's fixtures.
 #pragma once
 
 #include <cstddef>
@@ -27,17 +27,18 @@ class Contacts {
 
   bool has_pairs() const { return !pairs_.empty(); }
 
-  // At least so long nothing touches that does not yet, in seconds; 0 where something may. `state`
-  // is realized to Velocity. It trusts that nothing is pushed much harder than its weight.
+  // The time in seconds for which at least no solids touch that do not touch yet; 0 where solids
+  // may touch. `state` is realized to Velocity. The function trusts that no body is pushed much
+  // harder than its weight.
   double TimeToTouch(const SimTK::State& state);
-  // Whether that trust was misplaced: so fast at `state`, realized to Velocity, something may have
-  // come through something else within `seconds` from the state that was asked about last.
+  // Whether that trust was misplaced: as fast as solids are at `state`, realized to Velocity, one
+  // may have come through another one within `seconds` from the state that was asked about last.
   bool MayHaveTouched(const SimTK::State& state, double seconds) const;
-  // Whether within `seconds` from `state`, realized to Velocity, something may come so much deeper
-  // into something else. TimeToTouch was asked about `state` last.
+  // Whether within `seconds` from `state`, realized to Velocity, a solid may come so much deeper
+  // into another one. TimeToTouch was asked about `state` last.
   bool MayComeDeeper(const SimTK::State& state, double seconds, double depth_m) const;
-  // How long before `state`, realized to Velocity, the first of what is deeper than `late_m` was as
-  // deep as `met_m`, if it has come uniformly; 0: nothing is deeper.
+  // How long before `state`, realized to Velocity, the first of the contacts deeper than `late_m`
+  // was as deep as `met_m`, if it has come uniformly; 0: no contact is deeper.
   double LatenessOfTouch(const SimTK::State& state, double late_m, double met_m);
   // `state` is realized to Position.
   void Find(const SimTK::State& state, std::vector<Contact>* contacts);

@@ -18,15 +18,15 @@ class NearDirections {
   // `near`: how far apart two unit vectors are at most that are near each other; far below 1.
   explicit NearDirections(double near) : near_(near), cell_(64 * near) {}
 
-  // By the number that HasAny then asks about.
+  // Adds a direction with the number that HasAny then asks about.
   void Add(const SimTK::Vec3& direction, std::size_t number) {
     cells_[KeyOf(CellOf(direction, 0))].push_back(number);
   }
 
-  // Whether `is_it` of one that may be near, in no order.
+  // Whether `is_it` holds for a direction that may be near; directions are asked about in no order.
   template <class IsIt>
   bool HasAny(const SimTK::Vec3& direction, const IsIt& is_it) const {
-    // The cells that a cube around it reaches into: mostly one.
+    // The cells that a cube around the direction reaches into: mostly one.
     const Cell low = CellOf(direction, -near_), high = CellOf(direction, near_);
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
@@ -53,7 +53,7 @@ class NearDirections {
     }
     return cell;
   }
-  // Cells that share one are told apart by who asks.
+  // The caller tells apart cells that share a key.
   static std::int64_t KeyOf(const Cell& cell) {
     return (cell[0] * 73'856'093) ^ (cell[1] * 19'349'663) ^ (cell[2] * 83'492'791);
   }

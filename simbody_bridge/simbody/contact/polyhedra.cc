@@ -15,7 +15,7 @@ using SimTK::Vec3;
 
 // More products of edges than these are not looked at: meshes touch each other by their faces.
 constexpr std::size_t kMostEdgePairs = 400;
-// Edges have to be so much nearer than faces to count: what lies flat has both.
+// Edges have to be so much nearer than faces to count: solids that lie flat have both.
 constexpr double kEdgeShare = 0.95, kEdgeSlackM = 1e-6;
 
 struct Axis {
@@ -102,8 +102,8 @@ class Pair {
     return most;
   }
 
-  // The side of `other` that looks most against `outwards`, the normal of `side`, cut to what lies
-  // over `side`.
+  // The side of `other` that looks most against `outwards`, the normal of `side`, cut to the part
+  // that lies over `side`.
   static void CutSides(const Face& side, const std::vector<Vec3>& side_corners,
                        const Vec3& outwards, const Polyhedron& other, const Transform& other_pose,
                        const std::vector<Vec3>& other_corners, const Vec3& normal,
@@ -133,8 +133,8 @@ class Pair {
     }
   }
 
-  // What of an outline lies beyond a plane. A corner that leaves fades, and the two points where
-  // the outline crosses the plane appear as it does.
+  // The part of an outline that lies beyond a plane. A corner that leaves fades, and the two points
+  // where the outline crosses the plane appear as the corner fades.
   static void Cut(const std::vector<Corner>& outline, const Vec3& into, double offset,
                   std::vector<Corner>* cut) {
     cut->clear();
@@ -154,7 +154,7 @@ class Pair {
     }
   }
 
-  // The edge of each that reaches farthest towards the other; they cross each other.
+  // The edge of each solid that reaches farthest towards the other; the two edges cross each other.
   void MeetEdges(std::vector<Touch>* touches) const {
     const auto [a, a_end] = Edge(first_corners_, -best_.normal);
     const auto [b, b_end] = Edge(second_corners_, best_.normal);

@@ -15,7 +15,7 @@ void FindTouchesOfPolyhedra(const Polyhedron& first, const SimTK::Transform& fir
 
 // How far beyond a side's edge a point fades from a whole one to none.
 inline constexpr double kFadeM = 1e-3;
-// Of a point so far inside an edge; less than 0 outside.
+// The weight of a point so far inside an edge; less than 0 outside.
 double FadeOf(double inside_m);
 
 }  // namespace tcs

@@ -143,7 +143,8 @@ Vec3 NearestOfSegment(const Vec3& a, const Vec3& b, const Vec3& point) {
   return a + along * line;
 }
 
-// Of a point that is in front of the face's plane: inside its outline, or on it.
+// The face's point that is nearest to a point in front of the face's plane: inside the face's
+// outline, or on it.
 Vec3 NearestOfFace(const Polyhedron& solid, const Face& face, const Vec3& point) {
   const auto at = [&](std::size_t i) -> const Vec3& {
     return solid.corners[static_cast<std::size_t>(face.corners[i % face.corners.size()])];

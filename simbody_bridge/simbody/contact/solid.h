@@ -9,7 +9,7 @@
 
 namespace tcs {
 
-// What is nearest to a point.
+// How near a solid is to a point.
 struct Nearness {
   double distance;     // less than 0 inside
   SimTK::Vec3 normal;  // outwards, of unit length: the distance grows that way
@@ -37,13 +37,14 @@ class Solid {
   explicit Solid(const Geometry& geometry);
 
   Kind kind() const { return kind_; }
-  // Of a ball around the origin of the frame that the solid lies in; of a plane infinite.
+  // The radius of a ball around the origin of the frame that the solid lies in; of a plane
+  // infinite.
   double reach() const { return reach_; }
-  // Of what is round or a cylinder: a line along z of this half length, around which it has the
-  // radius; of a ball 0.
+  // Of a round solid or a cylinder: the half length of a line along z, around which the solid has
+  // the radius; of a ball 0.
   double radius() const { return radius_; }
   double half_length() const { return half_length_; }
-  // Of a polyhedron; of a cylinder a prism that stands for it among others of its kind.
+  // The polyhedron itself; of a cylinder a prism that stands for it among cylinders.
   const Polyhedron& polyhedron() const { return polyhedron_; }
 
   Nearness NearestTo(const SimTK::Vec3& point) const;

@@ -20,12 +20,12 @@ using Kind = Solid::Kind;
 constexpr int kStandingPoints = 6;  // of each rim of a cylinder that stands
 
 // The points of a cylinder that are lowest against `normal` (in its frame): where it lies or rolls
-// three along the line on which it does, a round of them on each rim where it stands; `each` takes
-// a point and its weight.
+// three points along the line on which it does, a round of points on each rim where it stands;
+// `each` takes a point and its weight.
 //
-// Simpson's weights give the line's load and its moments. The one in the middle is what a wheel
-// turns round on: by its two rims alone it would turn round one of these, as if the wheels were
-// nearer to each other, or farther apart, by their width.
+// Simpson's weights give the line's load and its moments. A wheel turns round on the point in the
+// middle: by its two rims alone it would turn round one of these, as if the wheels were nearer to
+// each other, or farther apart, by their width.
 template <class Each>
 void ForEachRimPoint(const Solid& cylinder, const Vec3& normal, const Each& each) {
   const double across = std::hypot(normal[0], normal[1]);
@@ -76,7 +76,8 @@ double NearestOnAxis(const Solid& round, const Transform& in_other, const Solid&
   return (low + high) / 2;
 }
 
-// A ball, or a line of balls: its ends, and between them what is deeper than both.
+// Touches of a ball, or of a line of balls: its ends, and between them the point that is deeper
+// than both.
 void TouchRound(const PlacedSolid& round, const PlacedSolid& other, std::vector<Touch>* touches) {
   const Transform in_other = ~other.pose * round.pose;
   const double radius = round.solid.radius();
@@ -112,7 +113,7 @@ void TouchPlane(const PlacedSolid& solid, const PlacedSolid& plane, std::vector<
   }
 }
 
-// On the side, the edge or the corner that it overlaps least.
+// A cylinder touches on the side, the edge or the corner that it overlaps least.
 void TouchCylinder(const PlacedSolid& cylinder, const PlacedSolid& other,
                    std::vector<Touch>* touches) {
   const Polyhedron& solid = other.solid.polyhedron();
@@ -180,7 +181,7 @@ void FindInOrder(const PlacedSolid& first, const PlacedSolid& second, std::vecto
   }
 }
 
-// Which of two comes first, as FindInOrder has them.
+// The rank by which one of two solids comes first, as FindInOrder has them.
 int Rank(const Solid& solid) {
   switch (solid.kind()) {
     case Kind::kRound:

@@ -1,4 +1,4 @@
-// Where two solids touch. What is found changes without a jump as they move, but for where another
+// Where two solids touch. Touches change without a jump as the solids move, but for where another
 // side of a solid becomes the nearest.
 #pragma once
 
@@ -14,7 +14,7 @@ struct Touch {
   SimTK::Vec3 point;
   SimTK::Vec3 normal;  // from the second solid towards the first
   double depth;        // more than 0
-  double weight;       // how much of a point it is: less than 1 where it is about to be none
+  double weight;       // how much of a point it is: less than 1 where it fades
 };
 
 struct PlacedSolid {
@@ -25,7 +25,7 @@ struct PlacedSolid {
 // Appends to `touches`.
 void FindTouches(const PlacedSolid& first, const PlacedSolid& second, std::vector<Touch>* touches);
 
-// They are at least as far from each other; less than 0: they may touch.
+// The solids are at least as far from each other; less than 0: they may touch.
 double GapBetween(const PlacedSolid& first, const PlacedSolid& second);
 
 }  // namespace tcs

@@ -18,11 +18,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kRounds = 6;
-// Slower than this a contact sticks: it creeps in proportion to what pushes it.
+// Slower than this a contact sticks: it creeps in proportion to the push on it.
 constexpr double kStickMps = 1e-4;
-// No contact pushes two apart faster than this: what lands stays down.
+// No contact pushes two bodies apart faster than this: a body that lands stays down.
 constexpr double kMostLeavingMps = 0.05;
-// What comes deeper than this within one step was met too late.
+// A contact that comes deeper than this within one step was met too late.
 constexpr double kLateM = 1e-3;
 // A step that is shortened for that ends so deep in the contact.
 constexpr double kMetM = 1e-4;
@@ -59,7 +59,7 @@ void ContactStep::AddRow(const SimbodyTree& tree, const Contact& contact, double
   rows_.push_back(std::move(row));
 }
 
-// What does not depend on the contacts, nor on what is assumed of drives.
+// Finds the forces that depend neither on the contacts nor on what is assumed of drives.
 void ContactStep::FindForces(SimbodyTree& tree) {
   const SimTK::State& state = tree.evaluated();
   const int all = state.getNU();
@@ -81,7 +81,7 @@ void ContactStep::FindForces(SimbodyTree& tree) {
   }
 }
 
-// The mass matrix with what joints hold against, and the forces.
+// Assembles the mass matrix with what joints hold against, and the forces.
 void ContactStep::Assemble(double h) {
   Eigen::MatrixXd whole = whole_mass_;
   Eigen::VectorXd forces = all_forces_;
@@ -180,7 +180,8 @@ void ContactStep::FindFriction(const SimbodyTree& tree) {
   at_bound_.assign(rubbing_.size(), 0);
 }
 
-// What the contacts do at the end of the step; whether that is not yet what was assumed.
+// Finds the contacts' forces at the end of the step. Returns whether these are not yet the assumed
+// ones.
 bool ContactStep::Update(double h) {
   bool has_changed = false;
   for (Row& row : rows_) {
@@ -266,7 +267,7 @@ void ContactStep::Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, d
     }
     tree.Project(step.to);
   } else {
-    step.to = step.from_rate;  // not finite: who took the step says so
+    step.to = step.from_rate;  // not finite: the code that took the step says so
   }
   // In between the motion is uniform.
   step.to_rate.resize(size);

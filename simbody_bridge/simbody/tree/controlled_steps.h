@@ -12,22 +12,23 @@
 
 namespace tcs {
 
-// `Method` derives from it, writes `worst_body_` of what it has tried, and has
-//   Begin(tree, loads, step): what any length of the step needs
-//   Try(tree, loads, step, seconds): a step of that length
-//   ErrorOf(tree, step, seconds): how far that may be off (GreatestError)
-//   EndAtEvent(tree, loads, step): of one that is good enough, to end it earlier
-//   PredictKink(tree, loads, step, seconds): before any try, when what acts has its first kink, as
-//     far as that can be told; else that length
-//   LateKink(tree, loads, step, seconds): of a good try that was to end behind that kink and does
-//     not, when it comes; else its length
-//   FirstKink(tree, loads, step, seconds): of a try that is not good enough, when its first kink
-//     was; else its length
+// `Method` derives from this class, writes `worst_body_` of what it has tried, and has
+//   Begin(tree, loads, step): finds what any length of the step needs
+//   Try(tree, loads, step, seconds): tries a step of that length
+//   ErrorOf(tree, step, seconds): how far that step may be off (GreatestError)
+//   EndAtEvent(tree, loads, step): ends a step that is good enough earlier, at an event
+//   PredictKink(tree, loads, step, seconds): before any try, when the acting loads have their first
+//     kink, as far as that can be told; else that length
+//   LateKink(tree, loads, step, seconds): when that kink comes, of a good try that was to end
+//     behind it and does not; else the try's length
+//   FirstKink(tree, loads, step, seconds): when the first kink was, of a try that is not good
+//     enough; else the try's length
 template <class Method>
 class ControlledSteps {
  public:
-  // No longer than `limit_s`, which is within the step's. `accuracy` as of RungeKutta3, over a
-  // joint's coordinates or speeds. Throws std::runtime_error where no step is short enough for it.
+  // Takes a step no longer than `limit_s`, which is within the step's limit. `accuracy` as of
+  // RungeKutta3, over a joint's coordinates or speeds. Throws std::runtime_error where no step is
+  // short enough for the accuracy.
   void TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
                       double limit_s) {
     method().Begin(tree, loads, step);
@@ -45,10 +46,10 @@ class ControlledSteps {
     tree.EvaluateOrRecall(step.to, loads.At(step, step.length_s), step.to_rate.data());
   }
 
-  // The body whose error was the greatest in what was tried last.
+  // The body whose error was the greatest in the last try.
   std::size_t worst_body() const { return worst_body_; }
 
-  // As long as its limit.
+  // Takes a step as long as its limit.
   void TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
     method().Begin(tree, loads, step);
     step.length_s = step.limit.seconds();

@@ -1,4 +1,5 @@
-// A Simbody force element of a forest: a part of what the commands make act in it.
+// A Simbody force element of a forest: a part of the loads that the commands make act in the
+// forest.
 #pragma once
 
 #include <span>
@@ -18,7 +19,7 @@ class ForestForce : public SimTK::Force::Custom::Implementation {
               const std::span<const Wrench>& acting)
       : forest_(forest), bodies_(std::move(bodies)), acting_(acting) {}
 
-  // Nobody asks.
+  // No caller asks for the energy.
   SimTK::Real calcPotentialEnergy(const SimTK::State& /*state*/) const final { return 0; }
 
  protected:

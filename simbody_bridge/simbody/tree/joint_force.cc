@@ -12,9 +12,9 @@ namespace {
 
 // A stop is a spring that alone would make the joint swing so fast, with critical damping.
 constexpr double kStopRadps = 500;
-// Over this depth its damping sets in.
+// Over this depth a stop's damping sets in.
 constexpr double kStopDepth = 2e-4;
-// What a joint in a stop, or about to be, takes to notice.
+// The time that it takes to notice a joint in a stop, or about to be in one.
 constexpr double kNearStopS = 1e-3;
 
 double StopForce(double depth, double speed_inwards, double inertia) {

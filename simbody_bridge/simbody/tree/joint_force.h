@@ -1,5 +1,5 @@
-// What acts along the joints, as a Simbody force element: drives, damping, and the stops at the
-// ends of their ranges. Friction is no function of the state: the steps find it.
+// The forces along the joints, as a Simbody force element: drives, damping, and the stops at the
+// ends of the joints' ranges. Friction is no function of the state: the steps find it.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@ class JointForce : public ForestForce {
   JointForce(const Forest& forest, std::vector<SimTK::MobilizedBody> bodies,
              const std::span<const Wrench>& acting);
 
-  // How hard the stops have to be for what hangs on the joints at the start.
+  // Finds how hard the stops have to be for the bodies that hang on the joints at the start.
   void Measure(const SimTK::SimbodyMatterSubsystem& matter, const SimTK::State& start);
 
   // How the forces fall as each speed grows, and as each coordinate that is a joint's only one
@@ -22,14 +22,14 @@ class JointForce : public ForestForce {
   void Slopes(const SimTK::State& state, std::vector<double>* by_speed,
               std::vector<double>* by_coordinate) const;
 
-  // What drives a joint, and how that is limited.
+  // The drive of a joint, and its limit.
   struct LimitedDrive {
     std::size_t speed;  // the joint's, among all
     double position, velocity;
     JointDrive drive;
     double limit;
   };
-  // Those with a spring or a damper, in the state where the forces were evaluated last.
+  // The drives with a spring or a damper, in the state where the forces were evaluated last.
   void FindDrives(const SimTK::State& state, std::vector<LimitedDrive>* drives) const;
 
   void calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
@@ -37,7 +37,7 @@ class JointForce : public ForestForce {
                  SimTK::Vector& mobility_forces) const override;
 
  private:
-  std::vector<double> inertia_;  // that each joint moves: kg m^2 or kg
+  std::vector<double> inertia_;  // inertia that each joint moves: kg m^2 or kg
 };
 
 // How long a joint takes to a stop, as fast as it is; less where it would be through it before

@@ -13,14 +13,14 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// What closed forms with springs cost grows with the cube of the speeds that push each other:
+// The cost of closed forms with springs grows with the cube of the speeds that push each other:
 // beyond this short steps are cheaper. Dampers alone have no such limit.
 constexpr std::size_t kMostSpeeds = 10;
 
 bool IsSprung(const JointDrive& drive) { return drive.stiffness > 0; }
 bool Holds(const JointDrive& drive) { return IsSprung(drive) || drive.damping > 0; }
 
-// Of each joint, 0 where it has no drive.
+// The effort ratio of each joint, 0 where it has no drive.
 void FindEffortRatios(const SimbodyTree& tree, std::span<const Wrench> acting,
                       std::span<const double> state, std::vector<double>* ratios) {
   const Forest& forest = tree.forest();
@@ -40,7 +40,7 @@ void Append(const Numbers& numbers, std::vector<double>* to) {
   to->insert(to->end(), numbers.data(), numbers.data() + numbers.size());
 }
 
-// Takes as many numbers as it has.
+// Takes as many numbers as `numbers` has.
 template <class Numbers>
 const double* Take(const double* from, Numbers* numbers) {
   std::copy_n(from, numbers->size(), numbers->data());
@@ -146,26 +146,26 @@ void JointSteps::Begin(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
                            .by_speed = part.Gather(by_speed_.data()),
                            .by_coordinate = part.Gather(by_coordinate_.data()),
                            .longest_s = std::min(step.try_s, step.limit.seconds())};
-    // Of a large part only stops are springs.
+    // In a large part only stops are springs.
     if (IsLarge(part)) start.by_coordinate.setZero();
     part.Begin(start);
   }
 }
 
-// For those parts that need it.
+// Finds the mass matrix for the parts that need it.
 void JointSteps::FindMass(SimbodyTree& tree, std::span<const double> state) {
   if (needs_masses_) tree.FindMass(state, &mass_);
 }
 
-// `way_` and `speed_` from the beginning on.
+// The state after `way_` and `speed_` from the step's beginning on.
 void JointSteps::Place(const SimbodyTree& tree, const IslandStep& step, std::span<double> state) {
   tree.CoordinateRates(step.from, way_, turn_);
   for (std::size_t i = 0; i < coordinates_; ++i) state[i] = step.from[i] + turn_[i];
   std::copy(speed_.begin(), speed_.end(), &state[coordinates_]);
 }
 
-// Coordinates of a base that turns do not grow as the speeds do: what remains of their rates is
-// taken as by Kutta's method.
+// Coordinates of a base that turns do not grow as the speeds do: the rest of their rates is taken
+// as by Kutta's method.
 void JointSteps::Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h) {
   const auto spread = [this](const JointPart& part, const JointMotion& motion) {
     part.Scatter(motion, way_.data(), speed_.data());
@@ -228,8 +228,8 @@ double JointSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doub
       [&](std::size_t body) { return slots[body]; }, &worst_body_);
 }
 
-// As all goes on if nothing but springs and dampers changes what pushes the joints: that takes none
-// of the engine's rates.
+// The motion goes on as if nothing but springs and dampers changed the push on the joints: the
+// prediction takes none of the engine's rates.
 double JointSteps::PredictKink(const SimbodyTree& tree, ModelLoads& loads, const IslandStep& step,
                                double h) {
   FindEffortRatios(tree, loads.At(step, 0), step.from, &ratios_);
@@ -256,8 +256,8 @@ double JointSteps::FirstKink(const SimbodyTree& tree, ModelLoads& loads, const I
   return crossings_.First(h, ratios_);
 }
 
-// How each part began, its springs and dampers, and its push. Then how far all that leads off from
-// where the step ends: coordinates, their rates, and speeds.
+// Writes how each part began, its springs and dampers, and its push. Then how far all that leads
+// off from where the step ends: coordinates, their rates, and speeds.
 void JointSteps::WriteCourse(SimbodyTree& tree, IslandStep& step) {
   FindMass(tree, step.to);
   for (const JointPart& part : parts_) {

@@ -1,4 +1,4 @@
-// Steps of an island of models in which servos hold joints, or these have damping or friction:
+// Steps of an island of models in which servos hold joints, or joints have damping or friction:
 // exponential Runge-Kutta 3(2), in which drives, damping and stops act in closed form
 // (joints/servo_motion.h), and friction as it is: a joint slides, or is held (joints/joint_part.h).
 // Like all steps they are functions of a state and of what acts.
@@ -26,10 +26,10 @@ class JointSteps : public ControlledSteps<JointSteps> {
   // Writes the step's course, too.
   void TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
                       double limit_s);
-  // As long as its limit, in pieces where joints come to rest or break away.
+  // Takes a step as long as its limit, in pieces where joints come to rest or break away.
   void TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
 
-  // Whether it was TakeControlled that took the step.
+  // Whether TakeControlled took the step.
   static bool Took(const IslandStep& step) { return !step.course.empty(); }
   // The state in the course of such a step.
   void Within(const SimbodyTree& tree, const IslandStep& step, double after_s,
@@ -51,14 +51,14 @@ class JointSteps : public ControlledSteps<JointSteps> {
   double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double h);
   void WriteCourse(SimbodyTree& tree, IslandStep& step);
 
-  std::vector<JointPart> parts_;  // what pushes each other's joints is one of them
+  std::vector<JointPart> parts_;  // joints that push each other are one part
   bool is_divided_ = false, has_own_ = false, needs_masses_ = false;
   std::size_t coordinates_ = 0;
   // Memory of the functions above.
   Eigen::MatrixXd mass_;
   std::vector<double> by_speed_, by_coordinate_;
   std::vector<double> state_, middle_rate_, end_rate_, error_;
-  std::vector<double> way_, speed_;                    // of all
+  std::vector<double> way_, speed_;                    // of all speeds
   std::vector<double> turn_, middle_turn_, end_turn_;  // how coordinates grow
   LimitCrossings crossings_;
   std::vector<double> ratios_;

@@ -9,17 +9,17 @@
 
 namespace tcs {
 
-// The speeds are `reduction` times those of joints that mimic no other.
+// All speeds are `reduction` times the speeds of joints that mimic no other.
 void Reduce(const SimbodyTree& tree, Eigen::MatrixXd* reduction);
 
-// The same by rows. Returns how many there are.
+// The same, by rows. Returns how many speeds mimic no other.
 Eigen::Index Reduce(const SimbodyTree& tree, std::vector<ReducedSpeed>* reduced);
 
-// What the mass matrix and the forces of all speeds are for those `count` that mimic no other.
+// Reduces the mass matrix and the forces of all speeds to the `count` speeds that mimic no other.
 void ReduceSystem(std::span<const ReducedSpeed> reduced, Eigen::Index count,
                   const Eigen::MatrixXd& mass, const Eigen::VectorXd& forces,
                   Eigen::MatrixXd* reduced_mass, Eigen::VectorXd* reduced_forces);
-// Changes or rates of all speeds, from those of the ones that mimic no other.
+// Changes or rates of all speeds, from those of the speeds that mimic no other.
 Eigen::VectorXd SpreadToAll(std::span<const ReducedSpeed> reduced, const Eigen::VectorXd& of_them);
 
 }  // namespace tcs

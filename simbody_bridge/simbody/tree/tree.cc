@@ -115,8 +115,7 @@ void SimbodyTree::SetStart() {
   start_.assign(y.getContiguousScalarData(), y.getContiguousScalarData() + y.size());
 }
 
-// What has been computed of a state that is loaded already is kept, but for what the commands act
-// on.
+// Results of a state that is loaded already are kept, but for those on which the commands act.
 void SimbodyTree::Load(std::span<const double> state) {
   if (state.empty()) return;
   const double* loaded = state_.getY().getContiguousScalarData();
@@ -141,9 +140,9 @@ void SimbodyTree::Evaluate(std::span<const double> state, std::span<const Wrench
   }
 }
 
-// Joints that mimic others are no constraints of Simbody's: those took two fifths of a step. The
-// forces on all joints (the mass matrix times their rates) and the mass matrix are reduced to the
-// joints that mimic no other, whose rates give those of all.
+// Joints that mimic others are no constraints of Simbody's: constraints took two fifths of a step.
+// The forces on all joints (the mass matrix times their rates) and the mass matrix are reduced to
+// the joints that mimic no other, whose rates give those of all.
 void SimbodyTree::TieToLeaders(double* rates) {
   if (!has_mass_) ComputeMass();
   Eigen::Map<Eigen::VectorXd> all(rates, mass_.rows());

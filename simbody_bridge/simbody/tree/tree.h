@@ -1,7 +1,7 @@
-// An island of models as Simbody knows it: a mobilized body for each body of the forest. What the
-// island does is a function of its coordinates and speeds and of what acts; a SimTK::State is the
-// memory in which that function is evaluated, and nothing is left in it from one evaluation to the
-// next.
+// An island of models as Simbody knows it: a mobilized body for each body of the forest. The
+// island's motion is a function of its coordinates and speeds and of what acts; a SimTK::State is
+// the memory in which that function is evaluated, and nothing is left in it from one evaluation to
+// the next.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,7 +28,8 @@ struct ReducedSpeed {
 
 class SimbodyTree {
  public:
-  // `forest` and what it points into outlive this. Throws what Simbody throws if it refuses it.
+  // `forest` and what it points into outlive this. Throws what Simbody throws if it refuses the
+  // forest.
   SimbodyTree(const Forest& forest, const std::array<double, 3>& gravity_mps2);
   SimbodyTree(const SimbodyTree&) = delete;
   SimbodyTree& operator=(const SimbodyTree&) = delete;
@@ -39,7 +40,7 @@ class SimbodyTree {
 
   // The derivatives of `state` where `acting` acts; NaN where Simbody cannot tell.
   void Evaluate(std::span<const double> state, std::span<const Wrench> acting, double* rate);
-  // The same, for free where it is what was asked for the last time: a step mostly begins where the
+  // The same, for free where the same was asked for the last time: a step mostly begins where the
   // one before has ended.
   void EvaluateOrRecall(std::span<const double> state, std::span<const Wrench> acting,
                         double* rate);
@@ -53,10 +54,10 @@ class SimbodyTree {
                  std::vector<double>* by_coordinate);
   // The mass matrix at `state` alone.
   void FindMass(std::span<const double> state, Eigen::MatrixXd* mass);
-  // That of the state that was evaluated last.
+  // The mass matrix of the state that was evaluated last.
   void FindMass(Eigen::MatrixXd* mass);
-  // Along which each joint moves what hangs on it, in the state that was evaluated last: for
-  // ForEachSpeedOf.
+  // Finds the axes along which each joint moves the bodies that hang on it, in the state that was
+  // evaluated last: for ForEachSpeedOf.
   void FindJointAxes();
   // Takes each speed (a number) that moves the body, with the velocity that 1 of it gives to
   // `point` (in the world) as a point of the body.
@@ -76,11 +77,11 @@ class SimbodyTree {
   }
   // Makes quaternions unit length again.
   void NormaliseQuaternions(std::span<double> state) const;
-  // The same, and takes joints that mimic others to where these are.
+  // The same, and takes joints that mimic others to where their leaders are.
   void Project(std::span<double> state);
   // No step from `state` on should be longer, so that error control does not miss a joint's stop.
   double LongestStepFrom(std::span<const double> state) const;
-  // At least so long nothing touches; 0 where something may.
+  // The time for which at least nothing touches; 0 where something may.
   double TimeToTouch(std::span<const double> state);
   // Whether something may have touched all the same within `seconds` from there to `state`.
   bool MayHaveTouched(std::span<const double> state, double seconds);
@@ -88,8 +89,8 @@ class SimbodyTree {
   bool MayComeDeeper(std::span<const double> state, double seconds, double depth_m);
   double LatenessOfTouch(std::span<const double> state, double late_m, double met_m);
 
-  // What was evaluated last, for who goes on from there: `state` as Simbody has it, realized to
-  // Acceleration. Its accelerations are as if no joint mimicked another.
+  // The last evaluation, for steps that go on from there: `evaluated` is the state as Simbody has
+  // it, realized to Acceleration. The state's accelerations are as if no joint mimicked another.
   const Forest& forest() const { return forest_; }
   const SimTK::SimbodyMatterSubsystem& matter() const { return matter_; }
   const SimTK::State& evaluated() const { return state_; }
@@ -99,7 +100,7 @@ class SimbodyTree {
   const JointForce& joint_force() const { return *joint_force_; }
   Contacts& contacts() { return *contacts_; }
 
-  // What of a state is a body's, into a state of another tree, in which it is `to_body`.
+  // Copies a body's part of a state into a state of another tree, in which the body is `to_body`.
   void CopyBody(std::size_t body, std::span<const double> state, const SimbodyTree& to,
                 std::size_t to_body, std::span<double> into) const;
   void ReadLinks(std::span<const double> state, std::span<const int> links,
@@ -127,7 +128,7 @@ class SimbodyTree {
   std::unique_ptr<Contacts> contacts_;
   SimTK::State state_;
   bool is_loaded_ = false, has_mass_ = false;
-  Eigen::MatrixXd mass_, tied_mass_;           // of what is loaded; memory of TieToLeaders
+  Eigen::MatrixXd mass_, tied_mass_;           // of the loaded state; memory of TieToLeaders
   std::vector<SimTK::SpatialVec> joint_axes_;  // of each speed
   std::span<const Wrench> acting_;             // while a state is evaluated
   struct {

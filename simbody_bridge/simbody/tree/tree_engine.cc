@@ -14,10 +14,10 @@ namespace tcs {
 namespace {
 
 constexpr double kFirstTreeTryS = 1e-3;
-// Where something touches, or is about to.
+// The step where something touches, or is about to.
 constexpr VirtualDuration kContactStep = VirtualDuration::Milliseconds(1);
 
-// With the memory of its steps: islands are integrated side by side.
+// A tree with the memory of its steps: islands are integrated side by side.
 struct SteppedTree : SimbodyTree {
   SteppedTree(const Forest& forest, const std::array<double, 3>& gravity_mps2) try
       : SimbodyTree(forest, gravity_mps2) {
@@ -104,7 +104,7 @@ class TreeEngine : public ForestEngine<SteppedTree> {
       tree.TakeWhole(loads, step);
     } else {
       tree.TakeControlled(loads, step, accuracy_, std::min(step.limit.seconds(), free_s));
-      // It was pushed harder than is trusted.
+      // A body was pushed harder than is trusted.
       while (step.length_s > kContactStep.seconds() &&
              tree.MayHaveTouched(step.to, step.length_s)) {
         tree.TakeControlled(loads, step, accuracy_, step.length_s / 2);
@@ -147,7 +147,7 @@ class TreeEngine : public ForestEngine<SteppedTree> {
       tree.contact_step.TakeUpToTouch(tree, loads, step, length_s);
     }
   }
-  // How long a step is that is one of contact.
+  // The length of a step of contact.
   VirtualDuration ContactStepOf(const IslandStep& step) const {
     return has_set_steps_ ? step.limit : std::min(kContactStep, step.limit);
   }

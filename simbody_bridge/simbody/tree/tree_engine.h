@@ -1,4 +1,4 @@
-// Simbody as an engine of islands of models: it gives their derivatives, and the steps are
+// Simbody as an engine of islands of models: Simbody gives their derivatives, and the steps are
 // Runge-Kutta 3's, of the exponential kind where servos act.
 #pragma once
 
