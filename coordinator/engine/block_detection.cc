@@ -1,13 +1,13 @@
 #include "coordinator/engine/block_detection.h"
 
 #include <fmt/format.h>
-#include <poll.h>
 
 #include <utility>
 
 #include "coordinator/engine/wiring.h"
 #include "coordinator/os/call_names.h"
 #include "coordinator/port/proc_files.h"
+#include "coordinator/port/waits.h"
 #include "coordinator/tasks/cpu_clock.h"
 
 namespace tcs {
@@ -107,8 +107,7 @@ bool BlockDetection::LetsOthersRun() {
 // or else the process is ended.
 bool BlockDetection::CutsOff(Task& task) {
   if (task.slot < 0 || SlotOf(task).gate.load() != shm::kGateWaiting) return false;
-  pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
-  if (poll(&incoming, 1, 0) != 0) return false;
+  if (IsReadable(task.process->link->incoming_fd())) return false;
   if (std::exchange(task.is_cut_off, true)) {
     all_.violations.EndProcess(*task.process, "a notification that was never sent");
     return true;

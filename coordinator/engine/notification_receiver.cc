@@ -1,8 +1,9 @@
 #include "coordinator/engine/notification_receiver.h"
 
-#include <unistd.h>
+#include <sys/types.h>
 
 #include "coordinator/engine/wiring.h"
+#include "coordinator/port/waits.h"
 #include "coordinator/tasks/cpu_clock.h"
 #include "shm/attach_protocol.h"
 
@@ -77,7 +78,7 @@ PollOutcome NotificationReceiver::Take(const Process& process, EventTime when) {
   constexpr std::size_t kAtOnce = 64;
   if (process.link == nullptr) return {};
   shm::PipeMessage messages[kAtOnce];
-  const ssize_t bytes = read(process.link->incoming_fd(), messages, sizeof messages);
+  const ssize_t bytes = ReadPipe(process.link->incoming_fd(), messages, sizeof messages);
   const std::size_t count = bytes > 0 ? static_cast<std::size_t>(bytes) / sizeof messages[0] : 0;
   PollOutcome found;
   for (std::size_t i = 0; i < count; ++i) {

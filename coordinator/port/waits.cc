@@ -10,9 +10,17 @@
 
 namespace tcs {
 
-std::size_t WaitForEvents(int epoll, std::span<epoll_event> events, HostDuration timeout) {
+int MakeWaitSet() { return epoll_create1(EPOLL_CLOEXEC); }
+
+bool ChangeWaitSet(int set, int operation, int fd, epoll_event* event) {
+  return epoll_ctl(set, operation, fd, event) == 0;
+}
+
+bool HasEvents(int set) { return IsReadable(set); }
+
+std::size_t WaitForEvents(int set, std::span<epoll_event> events, HostDuration timeout) {
   const timespec at_most = shm::ToTimespec(timeout.ns());
-  const int found = epoll_pwait2(epoll, events.data(), static_cast<int>(events.size()),
+  const int found = epoll_pwait2(set, events.data(), static_cast<int>(events.size()),
                                  timeout < HostDuration() ? nullptr : &at_most, nullptr);
   return found < 0 ? 0 : static_cast<std::size_t>(found);
 }
@@ -22,6 +30,13 @@ void AwaitReadable(int fd, HostDuration at_most) {
   const timespec time = shm::ToTimespec(at_most.ns());
   ppoll(&one, 1, &time, nullptr);
 }
+
+bool IsReadable(int fd) {
+  pollfd one{fd, POLLIN, 0};
+  return poll(&one, 1, 0) != 0;
+}
+
+ssize_t ReadPipe(int fd, void* to, std::size_t size) { return read(fd, to, size); }
 
 void Pause(HostDuration duration) {
   const timespec time = shm::ToTimespec(duration.ns());

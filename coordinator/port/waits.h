@@ -2,8 +2,10 @@
 #pragma once
 
 #include <sys/epoll.h>
+#include <sys/types.h>
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -11,13 +13,23 @@
 
 namespace tcs {
 
-// Waits until the epoll set has events, which are put into `events`, and at most so long (negative:
+// A set of descriptors that the coordinator waits for, as epoll_create1 and epoll_ctl have it.
+int MakeWaitSet();
+bool ChangeWaitSet(int set, int operation, int fd, epoll_event* event);
+// Whether the set has an event now.
+bool HasEvents(int set);
+
+// Waits until the set has events, which are put into `events`, and at most so long (negative:
 // without limit). Returns how many there are. While the coordinator waits the programs' threads
 // have the processor.
-std::size_t WaitForEvents(int epoll, std::span<epoll_event> events, HostDuration timeout);
+std::size_t WaitForEvents(int set, std::span<epoll_event> events, HostDuration timeout);
 
 // Waits until there is something to read, or at most so long.
 void AwaitReadable(int fd, HostDuration at_most);
+// Whether there is something to read now, or the pipe's other end is closed.
+bool IsReadable(int fd);
+// As read(2), of a pipe that does not wait.
+ssize_t ReadPipe(int fd, void* to, std::size_t size);
 
 // Sleeps for so long, whatever comes meanwhile.
 void Pause(HostDuration duration);

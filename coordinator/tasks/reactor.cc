@@ -1,6 +1,5 @@
 #include "coordinator/tasks/reactor.h"
 
-#include <poll.h>
 #include <sys/epoll.h>
 
 #include <utility>
@@ -32,7 +31,7 @@ PollOutcome& PollOutcome::operator|=(const PollOutcome& other) {
   return *this;
 }
 
-Reactor::Reactor() : epoll_(epoll_create1(EPOLL_CLOEXEC)) {}
+Reactor::Reactor() : epoll_(MakeWaitSet()) {}
 
 void Reactor::On(Tag tag, Handler handler) {
   handlers_[static_cast<std::size_t>(tag)] = std::move(handler);
@@ -42,17 +41,17 @@ bool Reactor::Add(int fd, std::uint32_t events, const Subject& subject) {
   epoll_event event{};
   event.events = events;
   event.data.u64 = Packed(subject);
-  return epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd, &event) == 0;
+  return ChangeWaitSet(epoll_.get(), EPOLL_CTL_ADD, fd, &event);
 }
 
 bool Reactor::Modify(int fd, std::uint32_t events, const Subject& subject) {
   epoll_event event{};
   event.events = events;
   event.data.u64 = Packed(subject);
-  return epoll_ctl(epoll_.get(), EPOLL_CTL_MOD, fd, &event) == 0;
+  return ChangeWaitSet(epoll_.get(), EPOLL_CTL_MOD, fd, &event);
 }
 
-void Reactor::Remove(int fd) { epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, fd, nullptr); }
+void Reactor::Remove(int fd) { ChangeWaitSet(epoll_.get(), EPOLL_CTL_DEL, fd, nullptr); }
 
 std::size_t Reactor::Wait(HostDuration timeout) {
   TCS_CHECK(!is_handling_);
@@ -66,10 +65,7 @@ std::size_t Reactor::Wait(HostDuration timeout) {
   return count_;
 }
 
-bool Reactor::HasMore() const {
-  pollfd any{epoll_.get(), POLLIN, 0};
-  return poll(&any, 1, 0) > 0;
-}
+bool Reactor::HasMore() const { return HasEvents(epoll_.get()); }
 
 PollOutcome Reactor::Handle(EventTime when) {
   PollOutcome found;

@@ -7,7 +7,6 @@
 #include <string.h>
 #include <sys/syscall.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cstdint>
@@ -83,12 +82,11 @@ long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
     case SYS_clock_gettime:
       TCS_CHECK(a == CLOCK_THREAD_CPUTIME_ID);
       return ReadCpuClock(thread, b);
-    case SYS_write: {
-      const long written =
-          write(static_cast<int>(a), reinterpret_cast<const void*>(b), static_cast<std::size_t>(c));
-      if (written > 0) kernel.Notified();
-      return written < 0 ? -errno : written;
-    }
+    case SYS_write:
+      kernel.descriptors().Write(static_cast<int>(a), reinterpret_cast<const void*>(b),
+                                 static_cast<std::size_t>(c));
+      kernel.Notified();
+      return c;
     case SYS_futex:
       TCS_CHECK(b == FUTEX_WAIT && d != 0);
       kernel.ComputeInShim(kWaitNs);

@@ -1,6 +1,7 @@
 // A thread of a simulated program: a stack of its own in this thread of the host's.
 #pragma once
 
+#include <setjmp.h>
 #include <ucontext.h>
 
 #include <functional>
@@ -27,7 +28,9 @@ class Fiber {
 
   const std::function<void()> body_;
   const std::unique_ptr<char[]> stack_;
-  ucontext_t inside_{}, outside_{};
+  ucontext_t begin_{}, outside_{};  // for its first entry
+  bool has_begun_ = false;
+  jmp_buf inside_{}, entered_{};
 };
 
 }  // namespace tcs::simulate

@@ -4,7 +4,6 @@
 #include <signal.h>
 #include <stdio.h>
 #include <ucontext.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <utility>
@@ -20,16 +19,6 @@ namespace tcs::simulate {
 namespace {
 
 constexpr std::int64_t kUs = 1'000, kMs = 1'000'000;
-
-// An eventfd is readable as often as somebody has made it so.
-void MakeReadable(int fd) {
-  const std::uint64_t one = 1;
-  TCS_CHECK(write(fd, &one, sizeof one) == sizeof one);
-}
-void TakeOne(int fd) {
-  std::uint64_t one;
-  TCS_CHECK(read(fd, &one, sizeof one) == sizeof one);
-}
 
 // The instruction at which the kernel has a thread make its call again.
 constexpr unsigned char kSyscall[] = {0x0f, 0x05};
@@ -94,8 +83,7 @@ std::int64_t Kernel::Lateness() {
   return luck_.OnceIn(20) ? luck_.Long(kUs, 200 * kUs) : luck_.Between(500, 3'000);
 }
 
-void Kernel::Note(const SimThread& thread, const char* what, std::int64_t value) const {
-  if (!traces_) return;
+void Kernel::WriteNote(const SimThread& thread, const char* what, std::int64_t value) const {
   fprintf(stderr, "%11.3f us  %d (level %d, computed %ld) %s %ld\n",
           static_cast<double>(now_ns_) / 1e3, thread.tid, thread.level, thread.program_ns, what,
           value);
@@ -124,10 +112,18 @@ std::int64_t Kernel::NextDue() const {
 }
 
 void Kernel::WakeDue() {
+  if (now_ns_ < none_due_before_ns_) return;
   for (SimThread& thread : threads_) {
     if (!thread.Waits() || thread.wakes_at_ns > now_ns_) continue;
     Wake(thread, thread.state == SimThread::State::kAtWord ? -ETIMEDOUT : 0);
   }
+  none_due_before_ns_ = NextDue();
+}
+
+void Kernel::WaitUntil(SimThread& thread, SimThread::State state, std::int64_t until_ns) {
+  thread.state = state;
+  thread.wakes_at_ns = until_ns;
+  none_due_before_ns_ = std::min(none_due_before_ns_, until_ns);
 }
 
 void Kernel::Wake(SimThread& thread, long result) {
@@ -185,7 +181,7 @@ void Kernel::Die(SimThread& thread) {
   has_said_ = true;
   if (!HasEnded(thread.process.pid)) return;
   for (const auto& [fd, pid] : watched_) {
-    if (pid == thread.process.pid) MakeReadable(fd);
+    if (pid == thread.process.pid) descriptors_.Raise(fd);
   }
 }
 
@@ -225,7 +221,7 @@ void Kernel::Sleep(const std::function<bool()>& has_events, std::int64_t timeout
         has_levels_ ? level < static_cast<int>(Level::kDetector) : level == 0 || luck_.OnceIn(200);
     if (detector_fd_ >= 0 && detects) {
       now_ns_ += luck_.Between(500, 2'000);
-      MakeReadable(std::exchange(detector_fd_, -1));
+      descriptors_.Raise(std::exchange(detector_fd_, -1));
       has_said_ = true;
     } else if (thread != nullptr) {
       const std::int64_t slice_ns = has_levels_ ? INT64_MAX / 2 : luck_.Long(20 * kUs, 4 * kMs);
@@ -290,9 +286,8 @@ long Kernel::WaitAt(const std::atomic<std::uint32_t>& word, std::uint32_t value,
   ++thread.waits;
   const std::int64_t until_ns = now_ns_ + timeout_ns;
   while (Deliverable(thread) == 0) {
-    thread.state = SimThread::State::kAtWord;
+    WaitUntil(thread, SimThread::State::kAtWord, until_ns);
     thread.word = &word;
-    thread.wakes_at_ns = until_ns;
     Stop();
     if (!thread.is_interrupted) {
       Note(thread, "is woken, with the result", thread.result);
@@ -319,7 +314,7 @@ long Kernel::Trap(long number, const long (&args)[6]) {
     std::copy(std::begin(args), std::end(args), std::begin(thread.call.args));
     thread.call_is_taken = false;
     thread.state = SimThread::State::kInTrap;
-    MakeReadable(thread.process.trap_listener);
+    descriptors_.Raise(thread.process.trap_listener);
     Note(thread, "makes the call", number);
     has_said_ = true;
     if (Deliverable(thread) != 0) Interrupt(thread);
@@ -337,8 +332,7 @@ long Kernel::Trap(long number, const long (&args)[6]) {
 
 void Kernel::BlockFor(std::int64_t ns) {
   SimThread& thread = *running_;
-  thread.state = SimThread::State::kInKernel;
-  thread.wakes_at_ns = now_ns_ + ns;
+  WaitUntil(thread, SimThread::State::kInKernel, now_ns_ + ns);
   Stop();
   Deliver(thread);
 }
@@ -399,7 +393,7 @@ void Kernel::Deliver(SimThread& thread, ucontext_t* call) {
 // Its wait ends, as a signal is there for it, or its death.
 void Kernel::Interrupt(SimThread& thread) {
   if (thread.state == SimThread::State::kInTrap && !thread.call_is_taken)
-    TakeOne(thread.call.listener);
+    descriptors_.Lower(thread.call.listener);
   Wake(thread, -EINTR);
   thread.is_interrupted = true;
 }
@@ -456,7 +450,7 @@ std::optional<TrappedCall> Kernel::ReceiveTrapped(int listener) {
         thread.call.listener != listener)
       continue;
     thread.call_is_taken = true;
-    TakeOne(listener);
+    descriptors_.Lower(listener);
     return thread.call;
   }
   return std::nullopt;

@@ -3,9 +3,6 @@
 // the code that runs outside of all threads; while it computes, sleeps or asks for something, time
 // passes here and nowhere else.
 //
-// The descriptors of the run (pipes, epoll sets) are the host's own: whether something is in them
-// is a matter of what threads have done before, not of time.
-//
 // What a kernel may do at any time, this one does by its seed: be late with timers, give the
 // processor to somebody of another's for a while, wake a thread for nothing, and, where priorities
 // do not forbid it, let threads run while the coordinator computes.
@@ -27,6 +24,7 @@
 #include <vector>
 
 #include "coordinator/port/traps.h"
+#include "tests/simulate/descriptors.h"
 #include "tests/simulate/luck.h"
 #include "tests/simulate/threads.h"
 
@@ -59,13 +57,16 @@ class Kernel {
   void OpensClock(int fd, pid_t tid) { clocks_[fd] = tid; }
   SimThread* OfClock(int fd) { return Find(clocks_[fd]); }
   void SetLevel(SimThread& thread, int level);
+  Descriptors& descriptors() { return descriptors_; }
   // Null: the coordinator runs.
   SimThread* running() { return running_; }
 
   // Has each thing that happens written to stderr.
   void Trace() { traces_ = true; }
   bool traces() const { return traces_; }
-  void Note(const SimThread& thread, const char* what, std::int64_t value = 0) const;
+  void Note(const SimThread& thread, const char* what, std::int64_t value = 0) const {
+    if (traces_) WriteNote(thread, what, value);
+  }
 
   // The coordinator computes, or has the kernel do something for it. Where there are no levels
   // others may come between.
@@ -107,6 +108,7 @@ class Kernel {
   bool HasAnswerToTake(std::uint64_t id);
 
  private:
+  void WriteNote(const SimThread& thread, const char* what, std::int64_t value) const;
   SimThread* Next();
   void Run(SimThread& thread, std::int64_t until_ns);
   void Die(SimThread& thread);
@@ -119,6 +121,7 @@ class Kernel {
   void InterruptWait(SimThread& thread);
   void Wake(SimThread& thread, long result);
   void WakeDue();
+  void WaitUntil(SimThread& thread, SimThread::State state, std::int64_t until_ns);
   std::int64_t NextDue() const;
   std::int64_t Lateness();
 
@@ -126,10 +129,12 @@ class Kernel {
 
   const bool has_levels_;
   Luck luck_;
+  Descriptors descriptors_;
   std::int64_t now_ns_;
   std::deque<SimThread> threads_;
   SimThread* running_ = nullptr;
   std::int64_t until_ns_ = 0;
+  std::int64_t none_due_before_ns_ = INT64_MAX;
   bool has_said_ = false;
   int detector_fd_ = -1;  // armed
   std::array<unsigned long, 65> handlers_{};

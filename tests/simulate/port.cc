@@ -1,7 +1,6 @@
 // The port (coordinator/port/) to a simulated host: each function of it that the engine uses, in
 // the place of the kernel's.
 #include <errno.h>
-#include <poll.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/epoll.h>
@@ -41,6 +40,12 @@ bool Lives(const SimThread* thread) {
   return thread != nullptr && thread->state != SimThread::State::kDead;
 }
 
+int OpenEmpty() {
+  const int fd = eventfd(0, EFD_CLOEXEC);
+  Kernel::This().descriptors().Open(fd);
+  return fd;
+}
+
 std::int64_t CpuOf(const SimThread* thread) { return Lives(thread) ? thread->cpu_ns : -1; }
 
 }  // namespace
@@ -57,7 +62,7 @@ std::int64_t HostClockNs(clockid_t) {
 }
 std::int64_t ProcessCpuClockNs(pid_t pid) { return CpuOf(Find(pid)); }
 int OpenThreadCpuClock(pid_t tid) {
-  const int fd = eventfd(0, EFD_CLOEXEC);
+  const int fd = OpenEmpty();
   Kernel::This().OpensClock(fd, tid);
   return fd;
 }
@@ -83,7 +88,7 @@ void LeaveRealTime(pid_t) {}
 
 // pidfds.h
 int OpenPidfd(pid_t pid) {
-  const int fd = eventfd(0, EFD_CLOEXEC);
+  const int fd = OpenEmpty();
   Kernel::This().Watch(fd, pid);
   return fd;
 }
@@ -184,26 +189,27 @@ bool WriteMemory(pid_t, const std::vector<iovec>&, const void*, std::size_t) { r
 int WhyNoLooksInto(pid_t) { return 0; }
 
 // waits.h
-std::size_t WaitForEvents(int epoll, std::span<epoll_event> events, HostDuration timeout) {
-  std::size_t count = 0;
-  const auto look = [&] {
-    const int found = epoll_wait(epoll, events.data(), static_cast<int>(events.size()), 0);
-    count = found < 0 ? 0 : static_cast<std::size_t>(found);
-    return count > 0;
-  };
+int MakeWaitSet() { return OpenEmpty(); }
+bool ChangeWaitSet(int set, int operation, int fd, epoll_event* event) {
+  return Kernel::This().descriptors().ChangeSet(set, operation, fd, event);
+}
+bool HasEvents(int set) { return Kernel::This().descriptors().HasEvents(set); }
+std::size_t WaitForEvents(int set, std::span<epoll_event> events, HostDuration timeout) {
+  Kernel& kernel = Kernel::This();
+  const auto look = [&] { return kernel.descriptors().HasEvents(set); };
   if (look()) {
-    Kernel::This().Spend(kCallNs);
-    return count;
+    kernel.Spend(kCallNs);
+  } else {
+    kernel.Sleep(look, timeout.ns());
   }
-  Kernel::This().Sleep(look, timeout.ns());
-  if (timeout != HostDuration()) look();
-  return count;
+  return kernel.descriptors().TakeEvents(set, events);
+}
+bool IsReadable(int fd) { return Kernel::This().descriptors().IsReadable(fd); }
+ssize_t ReadPipe(int fd, void* to, std::size_t size) {
+  return Kernel::This().descriptors().Read(fd, to, size);
 }
 void AwaitReadable(int fd, HostDuration at_most) {
-  const auto look = [fd] {
-    pollfd one{fd, POLLIN, 0};
-    return poll(&one, 1, 0) == 1;
-  };
+  const auto look = [fd] { return IsReadable(fd); };
   if (!look()) Kernel::This().Sleep(look, at_most.ns());
 }
 void Pause(HostDuration duration) {
@@ -217,7 +223,7 @@ void WakeAt(std::atomic<std::uint32_t>& word) {
 // block_detector.h
 BlockDetector::~BlockDetector() = default;
 std::string BlockDetector::Start() {
-  fired_.Reset(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  fired_.Reset(OpenEmpty());
   pidfd_.Reset(OpenPidfd(0));
   pid_ = getpid();
   return {};
@@ -228,8 +234,7 @@ void BlockDetector::Arm() {
   Kernel::This().ArmDetector(fired_.get());
 }
 bool BlockDetector::TakeFired() {
-  std::uint64_t count;
-  if (read(fired_.get(), &count, sizeof count) != sizeof count) return false;
+  if (!Kernel::This().descriptors().Take(fired_.get())) return false;
   armed_ = false;
   return true;
 }

@@ -47,12 +47,14 @@ Process& SimulatedRun::AddClient(Robot& robot, const ClientSpec& client) {
   next_pid_ += 1'000;
   threads_ = 0;
   client_->link = ProcessLink::Make();
+  kernel_.descriptors().Join(client_->link->notify_fd(), client_->link->incoming_fd());
   all_.reactor.Add(client_->link->incoming_fd(), EPOLLIN, {Tag::kPipe, client_->index});
   SimProcess& process = processes_.emplace_back();
   process.pid = client_->pid;
   process.notify_fd = client_->link->notify_fd();
   UniqueFd listener(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK | EFD_SEMAPHORE));
   process.trap_listener = listener.get();
+  kernel_.descriptors().Open(listener.get());
   all_.traps.Add(std::move(listener));
   return *client_;
 }
