@@ -35,8 +35,8 @@ class OwnEndpoints {
   // will.
   Index Add(const Endpoint& endpoint, int domain, std::int64_t now_ns);
 
-  // To all who read the topic, at `due_ns`, not before what it was written at `now_ns`;
-  // `timestamp_ns` is DDS's source timestamp.
+  // The sample reaches all readers of the topic at `due_ns`, and not before samples that were
+  // written earlier. `timestamp_ns` is DDS's source timestamp.
   void Write(Index writer, std::span<const std::byte> cdr, std::int64_t timestamp_ns,
              std::int64_t due_ns);
 

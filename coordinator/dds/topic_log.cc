@@ -55,7 +55,7 @@ std::optional<TopicLog::Topic> TopicLog::Note(const Endpoint& endpoint, int doma
   return report - reports_.begin();
 }
 
-// The endpoint is new, or has another QoS.
+// An endpoint is announced: again where its QoS changes, which is not noted.
 void TopicLog::NoteEndpoint(const DdsMessage& header, std::span<const std::byte> payload) {
   const Guid guid = GuidAt(header.subject);
   if (known_.contains(guid)) return;

@@ -151,16 +151,32 @@ bool IsNumber(const std::string& text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
+// Runs may be within each other: a client may start one. A process that has started runs means the
+// outermost of these, and any other process the innermost one that it belongs to.
+void KeepThoseOf(pid_t pid, std::vector<FoundRun>* runs) {
+  const auto has_started = [pid](const FoundRun& run) {
+    return DescendsFrom(run.coordinator, pid);
+  };
+  const bool starts = std::ranges::any_of(*runs, has_started);
+  std::erase_if(*runs, [&](const FoundRun& run) {
+    return starts ? !has_started(run) : !DescendsFrom(pid, run.coordinator);
+  });
+  std::vector<pid_t> coordinators;
+  for (const FoundRun& run : *runs) coordinators.push_back(run.coordinator);
+  std::erase_if(*runs, [&](const FoundRun& run) {
+    return std::ranges::any_of(coordinators, [&](pid_t other) {
+      return other != run.coordinator &&
+             (starts ? DescendsFrom(run.coordinator, other) : DescendsFrom(other, run.coordinator));
+    });
+  });
+}
+
 Chosen ChooseByProcess(std::vector<FoundRun> runs, const std::string& named) {
   const long number = std::strtol(named.c_str(), nullptr, 10);
   const auto pid = static_cast<pid_t>(std::min(number, static_cast<long>(INT32_MAX)));
   const auto owner = UserOf(pid);
   if (!owner) return fmt::format("there is no process {}", named);
-  // What a client has started belongs to the innermost run, if it is of several.
-  std::erase_if(runs, [pid](const FoundRun& run) {
-    return pid != run.coordinator && !DescendsFrom(pid, run.coordinator) &&
-           !DescendsFrom(run.coordinator, pid);
-  });
+  KeepThoseOf(pid, &runs);
   const bool is_others = runs.empty() && *owner != geteuid() && !MayLookInto(pid);
   if (is_others) return OnlyOwnerMayAsk(pid, *owner);
   return Only(std::move(runs),

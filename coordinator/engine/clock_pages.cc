@@ -78,10 +78,10 @@ void ClockPages::Write(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   slot.core = cpu.core;
   const VirtualTime end_of_spin = all_.spins.EndOfSpin(task);
   slot.spin_until_ns = end_of_spin.IsNever() ? shm::kNeverNs : clock.At(end_of_spin).ns();
-  // A thread that priority has stopped in the midst of its turn has had its answer. If a signal
-  // handler of its program lies on top of an exchange, the slot has the content of that exchange,
-  // put back.
-  if (!task.parked) return;
+  // A thread that priority has stopped in the midst of its turn has had its answer, and a trapped
+  // call is answered by its result. If a signal handler of its program lies on top of an exchange,
+  // the slot has the content of that exchange, put back.
+  if (!task.parked || task.trap_id != 0) return;
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];
   slot.wake_reason.store(task.reason);

@@ -222,6 +222,7 @@ bool Dispatcher::AnswerEarly(Task& task) {
   } else {
     const TrappedCall early = *task.early_trap;
     task.early_trap.reset();
+    if (task.slot >= 0) GateKeeper::AnswerBelow(task);
     finds_more = all_.trapped.Handle(task, early);
   }
   if (finds_more) all_.event_pump.Poll(EventPump::kNoWait, when);

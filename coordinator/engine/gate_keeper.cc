@@ -94,6 +94,15 @@ void GateKeeper::OpenGate(Task& task) {
   HostCpu::OpenGate(SlotOf(task));
 }
 
+void GateKeeper::AnswerBelow(Task& task) {
+  shm::ThreadSlot& slot = SlotOf(task);
+  if (slot.gate.load() == shm::kGateOpen) return;
+  slot.reply[0] = task.reply[0];
+  slot.reply[1] = task.reply[1];
+  slot.wake_reason.store(task.reason);
+  HostCpu::OpenGate(slot);
+}
+
 // A thread may begin to say that a handler ends its wait, and be dispatched before it has said so.
 // The thread does not stop for that, and goes on to what it says next: its note may be about that,
 // or about what the handler interrupted. The pipe keeps the order, so that the gate was open

@@ -35,6 +35,10 @@ class GateKeeper : public EnginePart {
   // True once, if the running thread is to go on.
   bool TakesOpening() { return std::exchange(opens_gate_, false); }
   void OpenGate(Task& task);
+  // A handler makes a system call of its own on top of an exchange that the thread has not slept
+  // for yet. That exchange has its answer now: once the call is answered, nothing else tells the
+  // thread to go on.
+  static void AnswerBelow(Task& task);
 
   // True if what `by` does happens later.
   bool PutOff(const Task* by, Late late);

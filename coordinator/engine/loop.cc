@@ -104,9 +104,7 @@ void Loop::StepCpu(VirtualCpu& cpu) {
     all_.early_turns.Take(task);
   } else if (all_.ahead.TakeTurn(task, horizon)) {
     // The thread has computed that already.
-  } else if (OnlyPays(task.state, start, task.debt, horizon)) {
-    PayDebt(task, horizon - start);
-  } else if (all_.spins.IsBeforeItsLook(task)) {
+  } else if (OnlyPays(task.state, start, task.debt, horizon) || all_.spins.IsBeforeItsLook(task)) {
     PayDebt(task, std::min(task.debt, horizon - start));
   } else {
     all_.dispatcher.Dispatch(task, horizon, idle_until);

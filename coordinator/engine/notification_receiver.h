@@ -18,9 +18,6 @@ class NotificationReceiver : public EnginePart {
   // now that belongs to this moment. If a handler has come meanwhile, what the handler interrupted
   // is answered first: the coordinator may not have heard of it yet.
   bool Handle(Task& task);
-  // The thread is about to have its turn. If a signal was to end its wait, and no signal is there
-  // for the thread, the thread waits on.
-  void TakeAgainIfUnmarked(Task& task);
 
  private:
   void HandlerCame(Task& task, EventTime when);

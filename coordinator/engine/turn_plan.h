@@ -48,9 +48,11 @@ constexpr bool GivesWay(VirtualTime start, VirtualTime horizon, VirtualTime next
 
 // The thread owes so much that it would come to its horizon without running: then that time passes,
 // and the thread is not dispatched. A thread that has not registered has no clock that could show
-// that time.
+// that time. A thread that holds pays all that it owes first: it goes on, to read or to write, at
+// the time that its clock shows, and that time has to be safe.
 constexpr bool OnlyPays(TaskState state, VirtualTime start, VirtualDuration debt,
                         VirtualTime horizon) {
+  if (state == TaskState::kHolding && debt > VirtualDuration()) return true;
   return state != TaskState::kStarting && start + debt >= horizon;
 }
 

@@ -82,7 +82,7 @@ pid_t ProcessOfThread(pid_t tid);
 pid_t TracerOf(pid_t pid);
 bool IsThreadOf(pid_t pid, pid_t tid);
 
-// Whether the process is a child of `ancestor`, or a child of its children, and so on.
+// Whether the process is `ancestor`, or a child of it, or a child of its children, and so on.
 bool DescendsFrom(pid_t pid, pid_t ancestor);
 
 std::vector<pid_t> ChildrenOf(pid_t pid);

@@ -22,9 +22,11 @@ Svg::Points Thinned(const Track& track, const Axis& x, const Axis& y, double pix
   const std::size_t n = track.time_s.size();
   const auto step = std::max<std::size_t>(
       1, static_cast<std::size_t>(static_cast<double>(n) / std::max(1.0, pixels)));
-  for (std::size_t i = 0; i < n; i += step) {
+  const auto add = [&](std::size_t i) {
     points.emplace_back(x.Pixel(track.time_s[i]), y.Pixel(track.distance_m[i]));
-  }
+  };
+  for (std::size_t i = 0; i < n; i += step) add(i);
+  if (n > 0 && (n - 1) % step != 0) add(n - 1);
   return points;
 }
 

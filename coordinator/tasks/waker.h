@@ -19,7 +19,8 @@ namespace tcs {
 
 class Waker {
  public:
-  // The parts that keep something for a thread as long as it waits. All functions must be set.
+  // The parts that keep something for a thread as long as it waits. All functions must be set but
+  // the one that may be null.
   struct Listeners {
     // The wait has begun; a signal that ends it may be pending already.
     std::function<void(Task&)> began_by_signal;

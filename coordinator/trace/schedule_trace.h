@@ -1,5 +1,5 @@
 // Which thread ran when, in virtual time, as Chrome trace events (JSON): ui.perfetto.dev and
-// chrome://tracing open the file. One row per client under its robot, one for the dynamics.
+// chrome://tracing open the file. One row per thread under its robot, one for the dynamics.
 //
 // A thread's slices that follow each other without a gap become one, so that a planner's second is
 // one bar and not a thousand. Everything written derives from virtual time: two deterministic runs

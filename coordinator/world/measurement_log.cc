@@ -6,25 +6,19 @@
 #include <span>
 #include <utility>
 
+#include "coordinator/channel/forwarding_outlet.h"
 #include "coordinator/world/reading_quantities.h"
 
 namespace tcs {
 
-class MeasurementLog::LoggedOutlet final : public Outlet {
+class MeasurementLog::LoggedOutlet final : public ForwardingOutlet {
  public:
   LoggedOutlet(MeasurementLog& log, const SensorChannelSpec& sensor, std::unique_ptr<Outlet> outlet)
-      : log_(log), sensor_(sensor), outlet_(std::move(outlet)) {}
+      : ForwardingOutlet(std::move(outlet)), log_(log), sensor_(sensor) {}
 
   bool Send(const Reading& reading, VirtualTime arrives) override {
     log_.Write(sensor_.name, sensor_.fields, reading);
-    return outlet_->Send(reading, arrives);
-  }
-  VirtualTime NextDue() const override { return outlet_->NextDue(); }
-  bool HandOver(VirtualTime now) override { return outlet_->HandOver(now); }
-  std::string WhyUnheard() const override { return outlet_->WhyUnheard(); }
-  std::string WhatWasLost() const override { return outlet_->WhatWasLost(); }
-  void TellOf(DatagramWatch& watch, const std::string& channel) override {
-    outlet_->TellOf(watch, channel);
+    return ForwardingOutlet::Send(reading, arrives);
   }
 
  private:

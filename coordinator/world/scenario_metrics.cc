@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "coordinator/channel/forwarding_outlet.h"
 #include "coordinator/world/reading_quantities.h"
 
 namespace tcs {
@@ -54,22 +55,14 @@ double MotionOf(std::size_t part, const std::array<double, 3>& position,
 
 }  // namespace
 
-class ScenarioMetrics::HeardOutlet final : public Outlet {
+class ScenarioMetrics::HeardOutlet final : public ForwardingOutlet {
  public:
   HeardOutlet(ScenarioMetrics& metrics, std::size_t sensor, std::unique_ptr<Outlet> outlet)
-      : metrics_(metrics), sensor_(sensor), outlet_(std::move(outlet)) {}
+      : ForwardingOutlet(std::move(outlet)), metrics_(metrics), sensor_(sensor) {}
 
   bool Send(const Reading& reading, VirtualTime arrives) override {
     metrics_.Hear(sensor_, reading);
-    return outlet_->Send(reading, arrives);
-  }
-  VirtualTime NextDue() const override { return outlet_->NextDue(); }
-  bool HandOver(VirtualTime now) override { return outlet_->HandOver(now); }
-  std::size_t Kept() const override { return outlet_->Kept(); }
-  std::string WhyUnheard() const override { return outlet_->WhyUnheard(); }
-  std::string WhatWasLost() const override { return outlet_->WhatWasLost(); }
-  void TellOf(DatagramWatch& watch, const std::string& channel) override {
-    outlet_->TellOf(watch, channel);
+    return ForwardingOutlet::Send(reading, arrives);
   }
 
  private:

@@ -1,8 +1,8 @@
 // A forest in MuJoCo's own language, MJCF. Pure: the code needs no MuJoCo.
 //
 // Names tell which part is which: body and joint 'b3' are those of forest.bodies[3] ('b3x', 'b3y',
-// 'b3z' the slides of joints that need them, 'b3' their rotation), site 'l2' is the frame of link
-// 2, actuators 'l2' and 'j4' are the wrench along its axes and the drive of joint 4.
+// 'b3z' the slides of joints that need them, 'b3' their rotation), site 'b3' is that body's
+// frame, actuators 'b3' and 'j4' are the wrench along its axes and the drive of joint 4.
 #pragma once
 
 #include <string>

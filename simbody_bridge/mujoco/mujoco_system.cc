@@ -244,8 +244,8 @@ int MujocoSystem::BodyOfSpeed(int speed) const {
   return found == bodies_.end() ? -1 : static_cast<int>(found - bodies_.begin());
 }
 
-// MuJoCo says by which number of the state a step failed. Where that is a base, or all at once,
-// what moves fastest beside its inertia is the better guess: nobody knows.
+// MuJoCo says by which number of the state a step failed: the part that this number moves has
+// failed.
 void MujocoSystem::FindFailedBody() {
   failed_body_ = -1;
   for (const int kind : {mjWARN_BADQACC, mjWARN_BADQVEL, mjWARN_BADQPOS}) {

@@ -29,6 +29,12 @@ bool SleepUntil(std::int64_t at_ns);
 // As the C library makes it: nothing of the shim's is on the way. `operation`: FUTEX_WAIT or
 // FUTEX_WAKE. Returns as the kernel does.
 long Futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value);
+// A timer of the thread's, by raw calls: its signal is for this thread.
+int CreateTimer(int signal);
+// First after that time, then after each interval; 0: not again.
+void SetTimer(int timer, std::int64_t after_ns, std::int64_t interval_ns);
+// The overruns of the timer's signal that was accepted last.
+int OverrunsOf(int timer);
 // All threads handle the signal so; `flags` of sigaction(2) besides SA_SIGINFO.
 void HandleBy(int signal, void (*handler)(int, siginfo_t*, void*), int flags);
 

@@ -83,6 +83,7 @@ long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
       TCS_CHECK(a == CLOCK_THREAD_CPUTIME_ID);
       return ReadCpuClock(thread, b);
     case SYS_write:
+      kernel.Note(thread, "notifies, of kind", static_cast<int>(t_thread.slot->note.kind));
       kernel.descriptors().Write(static_cast<int>(a), reinterpret_cast<const void*>(b),
                                  static_cast<std::size_t>(c));
       kernel.Notified();

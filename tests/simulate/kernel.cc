@@ -377,6 +377,11 @@ void Kernel::Deliver(SimThread& thread, ucontext_t* call) {
       info.si_code = is_ours ? SI_QUEUE : SI_TKILL;
       info.si_value.sival_ptr =
           reinterpret_cast<void*>(is_ours ? thread.dispatch : static_cast<std::uint64_t>(sent_ns));
+      if (signal == thread.timer.number) {
+        info.si_code = SI_TIMER;
+        info.si_timerid = thread.timer.timer_id;
+        info.si_overrun = thread.timer.overruns;
+      }
       ucontext_t context{};
       if (call != nullptr && lower == 0) context = *call;
       __builtin_memcpy(&context.uc_sigmask, &saved, sizeof saved);
@@ -422,6 +427,14 @@ void Kernel::Send(SimThread& thread, int signal) {
   thread.pending |= SignalBit(signal);
   Note(thread, "is sent signal", signal);
   if ((thread.blocked_signals & SignalBit(signal)) == 0) InterruptWait(thread);
+}
+
+// One that is pending already stays what it is.
+void Kernel::SendTimer(const TimerSignalRequest& request) {
+  SimThread* const thread = Find(request.tid);
+  if (thread == nullptr) return;
+  if ((thread->pending & SignalBit(request.number)) == 0) thread->timer = request;
+  Send(*thread, request.number);
 }
 
 void Kernel::InterruptWait(SimThread& thread) {

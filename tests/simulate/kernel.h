@@ -98,6 +98,7 @@ class Kernel {
   void WakeAt(const std::atomic<std::uint32_t>& word);
   void SendToGate(pid_t tid, std::uint64_t dispatch);
   void Send(SimThread& thread, int signal);
+  void SendTimer(const TimerSignalRequest& request);
   // The running thread comes back from a call.
   void Returns() { Deliver(*running_); }
   void SendToProcess(SimProcess& process, int signal);

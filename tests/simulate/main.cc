@@ -90,7 +90,8 @@ void RunSeed(std::uint64_t seed, const Request& request) {
     Run({seeds, has_levels, false}, request);
     return;
   }
-  const bool has_both = !Simulation::HasSignals(seed) && luck.OnceIn(2);
+  const bool has_both =
+      !Simulation::HasSignals(seed) && !Simulation::HasTimers(seed) && luck.OnceIn(2);
   const auto one = Run({seeds, has_levels, true}, request);
   Compare(one, Run({elsewhere, has_both ? !has_levels : has_levels, true}, request));
 }

@@ -148,7 +148,10 @@ bool DescendsFrom(pid_t, pid_t) { return true; }
 std::vector<pid_t> ChildrenOf(pid_t) { return {}; }
 
 // thread_signals.h
-void SendTimerSignal(const TimerSignalRequest&) {}
+void SendTimerSignal(const TimerSignalRequest& request) {
+  Kernel::This().Spend(kCallNs);
+  Kernel::This().SendTimer(request);
+}
 void SendToGate(pid_t, pid_t tid, std::uint64_t dispatch) {
   Kernel::This().Spend(kCallNs);
   Kernel::This().SendToGate(tid, dispatch);

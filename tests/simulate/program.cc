@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "libtcs_preload/virtual_clock.h"
+#include "shm/layout.h"
 #include "tests/simulate/actions.h"
 #include "tests/simulate/broken.h"
 
@@ -16,7 +18,7 @@ namespace {
 
 constexpr std::int64_t kUs = 1'000, kMs = 1'000'000;
 
-constexpr int kSignal = SIGUSR1;
+constexpr int kSignal = SIGUSR1, kTimerSignal = SIGUSR2;
 
 }  // namespace
 
@@ -142,7 +144,69 @@ void SimProgram::OnSignal(int, siginfo_t* info, void*) {
   program.LookAtClock();
 }
 
-void SimProgram::HandleSignals() { HandleBy(kSignal, OnSignal, SA_RESTART); }
+std::int64_t SimTimer::NextNs() const {
+  if (number < 0 || (interval_ns == 0 && told > 0)) return INT64_MAX;
+  return first_ns + told * interval_ns;
+}
+
+// Where nothing keeps the thread from its core it is told of each expiration before the next one.
+void SimProgram::CheckTimer(std::int64_t now_ns) const {
+  const std::int64_t next_ns = timer_.NextNs();
+  if (next_ns == INT64_MAX || timer_.is_unknown || !rules_.has_own_core || !MustHold()) return;
+  if (next_ns + timer_.interval_ns + 2 * shm::kShortIntervalNs + rules_.slack_ns + rules_.call_ns <
+      now_ns)
+    Broken("a timer that ran out at %ld has told nobody by %ld", next_ns, now_ns);
+}
+
+void SimProgram::ChangeTimer(std::int64_t after_ns, std::int64_t interval_ns) {
+  const std::int64_t now_ns = LookAtClock();
+  const int handled = handled_;
+  timer_.is_unknown = true;
+  SetTimer(timer_.number, after_ns, interval_ns);
+  timer_.first_ns = after_ns == 0 ? INT64_MAX : now_ns + after_ns - rules_.call_ns;  // not before
+  timer_.interval_ns = interval_ns;
+  timer_.told = timer_.signals = 0;
+  timer_.may_be_stale = true;
+  timer_.is_unknown = handled_ != handled;
+}
+
+void SimProgram::UseTimer() {
+  if (timer_.number < 0) timer_.number = CreateTimer(kTimerSignal);
+  CheckTimer(LookAtClock());
+  ChangeTimer(luck_.Long(10 * kUs, 20 * kMs), luck_.OnceIn(3) ? 0 : luck_.Long(kUs, 10 * kMs));
+}
+
+void SimProgram::NoteTold(std::int64_t count, std::int64_t now_ns) {
+  const std::int64_t told = std::exchange(timer_.told, timer_.told + count - 1);
+  const std::int64_t last_ns = timer_.NextNs();
+  if (last_ns <= now_ns) {
+    ++timer_.told;
+    return CheckTimer(now_ns);
+  }
+  timer_.told = told;
+  if (!std::exchange(timer_.may_be_stale, false))
+    Broken("a timer told at %ld of %ld expirations, the last at %ld", now_ns, count, last_ns);
+}
+
+void SimProgram::OnTimer(int, siginfo_t*, void*) {
+  SimProgram& program = *Kernel::This().running()->program;
+  const std::int64_t now_ns = program.LookAtClock();
+  ++program.handled_;
+  if (program.first_handled_ns_ == 0) program.first_handled_ns_ = now_ns;
+  SimTimer& timer = program.timer_;
+  const std::int64_t count = 1 + OverrunsOf(timer.number);
+  const std::int64_t told_ns = program.LookAtClock();
+  if (!timer.is_unknown && program.MustHold()) program.NoteTold(count, told_ns);
+  Compute(program.luck_.Long(kUs / 5, 20 * kUs));
+  // Nothing else would be done any more.
+  constexpr int kMostSignals = 5;
+  if (++timer.signals >= kMostSignals && timer.interval_ns < 200 * kUs) program.ChangeTimer(0, 0);
+}
+
+void SimProgram::HandleSignals() {
+  HandleBy(kSignal, OnSignal, SA_RESTART);
+  HandleBy(kTimerSignal, OnTimer, SA_RESTART);
+}
 
 // It says that it has computed a little less than it has, or slept a little longer.
 void SimProgram::Cheat() {
@@ -198,7 +262,7 @@ void SimProgram::Scribble() {
 }
 
 void SimProgram::Act() {
-  switch (luck_.Between(0, 16)) {
+  switch (luck_.Between(0, 17)) {
     case 0:
     case 1:
     case 2:
@@ -227,6 +291,9 @@ void SimProgram::Act() {
     case 14:
     case 15:
       if (MustHold()) ReadFile();
+      return;
+    case 16:
+      if (rules_.has_timers && MustHold()) UseTimer();
       return;
     default:
       LookAtClock();

@@ -30,9 +30,24 @@ struct SimFile {
   std::int64_t written_ns = 0, read_ns = 0;
 };
 
+// A thread's timer, and how often it has been told of an expiration of the present setting.
+struct SimTimer {
+  int number = -1;  // there is none yet
+  std::int64_t first_ns = INT64_MAX;
+  std::int64_t interval_ns = 0, told = 0;
+  int signals = 0;  // of this setting
+  // A signal of the setting before may still come.
+  bool may_be_stale = false;
+  // The setting is being changed, or a signal came while it was: nobody knows of which one.
+  bool is_unknown = true;
+
+  // When the next one is that it has not been told of; INT64_MAX: there is none.
+  std::int64_t NextNs() const;
+};
+
 // What may be done, and what must hold besides.
 struct ProgramRules {
-  bool has_kernel_waits = false, has_signals = false;
+  bool has_kernel_waits = false, has_signals = false, has_timers = false;
   bool is_hostile = false;  // it writes into its slot, and nothing that it does need hold
   // Each thread of its robot has a core for itself: nobody waits for one.
   bool has_own_core = false;
@@ -71,6 +86,11 @@ class SimProgram {
   void WriteToFile();
   void ReadFile();
   void SendSignal();
+  void UseTimer();
+  void ChangeTimer(std::int64_t after_ns, std::int64_t interval_ns);
+  void NoteTold(std::int64_t count, std::int64_t now_ns);
+  void CheckTimer(std::int64_t now_ns) const;
+  static void OnTimer(int signal, siginfo_t* info, void* context);
   void Scribble();
   void Cheat();
   static void OnSignal(int signal, siginfo_t* info, void* context);
@@ -84,6 +104,7 @@ class SimProgram {
   SimFile& file_;
   std::vector<std::int64_t> shown_;
   std::vector<SimThread*> others_;
+  SimTimer timer_;
   int handled_ = 0;  // signals
   // By its clock, when it began to handle the first one since its last sleep began.
   std::int64_t first_handled_ns_ = 0;

@@ -48,6 +48,7 @@ Simulation::Simulation(const SimulationSeeds& seeds, bool has_levels, bool is_fi
   rules_.drift_bound_ns = run_.all().run.scenario.drift_bound.ns();
   rules_.has_kernel_waits = !is_fixed && seeds.script % 2 == 0;
   rules_.has_signals = HasSignals(seeds.script);
+  rules_.has_timers = HasTimers(seeds.script);
   if (script_.OnceIn(4)) dies_at_ = static_cast<int>(script_.Between(0, 2'000));
   rules_.is_hostile = seeds.script % 5 == 0;
   AddPrograms(script_);
@@ -134,10 +135,12 @@ void Simulation::CheckCharges() {
     const auto computed_ns = static_cast<std::int64_t>(
         static_cast<double>(run_.kernel().threads()[i].program_ns) / robot.speed);
     const std::int64_t charged_ns = tasks_[i]->charged.ns();
-    // Of each exchange with the coordinator a cheat may keep what an honest one can take.
+    // Of each exchange with the coordinator a cheat may keep what an honest one can take, by the
+    // host's clock.
+    const std::int64_t kept_ns = 2 * kMs + run_.kernel().threads()[i].waits * shm::kMostExchangeNs;
     const std::int64_t slack_ns =
         computed_ns / 100 + kSlackNs +
-        (is_hostile ? 2 * kMs + run_.kernel().threads()[i].waits * shm::kMostExchangeNs : 0);
+        (is_hostile ? static_cast<std::int64_t>(static_cast<double>(kept_ns) / robot.speed) : 0);
     if (is_hostile && charged_ns > computed_ns) continue;
     if (std::abs(charged_ns - computed_ns) > slack_ns)
       Broken("thread %zu has computed for %ld ns, and was charged %ld", i, computed_ns, charged_ns);

@@ -28,9 +28,10 @@ class Simulation {
   // On stderr: each thing that happens from now on; what has become of each thread.
   void TraceEvents() { run_.kernel().Trace(); }
   void TraceThreads() const;
-  // Programs of that script send signals. When threads handle them is not the same with levels and
-  // without.
+  // Programs of that script send signals, or have timers that do. When threads handle these is not
+  // the same with levels and without.
   static bool HasSignals(std::uint64_t script) { return script % 3 != 0; }
+  static bool HasTimers(std::uint64_t script) { return Luck(script).Part(2).OnceIn(2); }
 
  private:
   static Scenario ScenarioOf(Luck& luck);

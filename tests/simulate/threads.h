@@ -8,6 +8,7 @@
 #include <functional>
 #include <utility>
 
+#include "coordinator/port/thread_signals.h"
 #include "coordinator/port/traps.h"
 #include "libtcs_preload/guest.h"
 #include "tests/simulate/fiber.h"
@@ -47,6 +48,7 @@ struct SimThread {
   // Of that, what its program has computed, rather than the shim and the kernel for it.
   std::int64_t program_ns = 0;
   std::uint64_t blocked_signals = 0, pending = 0;  // bit 0 is signal 1
+  TimerSignalRequest timer;                        // of its last timer's signal
   std::uint64_t dispatch = 0;                      // what the signal says that sends it to its gate
   std::int64_t waits = 0;                          // at words
   // What it waits for.

@@ -90,6 +90,39 @@ TEST_F(EngineWaits, WaitersGoOnInTheOrderInWhichTheyCame) {
   }
 }
 
+// Handlers ask the coordinator for the time, which has its answer, and make calls past the shim.
+TEST_F(EngineWaits, AWaitThatHandlersEndHasEndedWhateverTheyCall) {
+  for (const bool has_levels : {true, false}) {
+    for (const bool is_fixed : {true, false}) {
+      Begin({.count = 2}, is_fixed, has_levels);
+      bool is_over = false, was_full = true;
+      std::int64_t ended_ns = 0;
+      static std::atomic<std::uint32_t> word;
+      const Task& sleeps = Add({}, [&] {
+        HandleBy(
+            SIGUSR1,
+            [](int, siginfo_t*, void*) {
+              SleepUntil(ReadClock() + kMs);
+              Futex(word, FUTEX_WAKE, 1);
+              Futex(word, FUTEX_WAKE, 1);
+            },
+            0);
+        was_full = SleepUntil(kSecond);
+        ended_ns = ReadClock();
+        is_over = true;
+      });
+      Add({.robot = 1}, [&] {
+        SleepUntil(20 * kMs);
+        Simulated_tgkill(sleeps.process->pid, sleeps.tid, SIGUSR1);
+      });
+      ASSERT_TRUE(StepUntil([&] { return is_over; }));
+      EXPECT_FALSE(was_full) << has_levels << is_fixed;
+      EXPECT_GE(ended_ns, 21 * kMs);
+      EXPECT_LT(ended_ns, 30 * kMs);
+    }
+  }
+}
+
 // The handler makes a call, and is stopped in its midst and dispatched anew.
 TEST_F(EngineWaits, AWaitThatASignalEndsHasEndedWhateverTheHandlerDoes) {
   for (const bool has_levels : {true, false}) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "coordinator/channel/forwarding_outlet.h"
 #include "coordinator/dds/command_messages.h"
 #include "coordinator/dds/measurement_messages.h"
 #include "coordinator/dds/robot_topics.h"
@@ -40,25 +41,20 @@ void ChannelRecords::Write(Topic* topic, const std::string& name, std::string_vi
   sink_->WriteOwn(topic->number, at, cdr);
 }
 
-class ChannelRecords::WrappedOutlet final : public Outlet {
+class ChannelRecords::WrappedOutlet final : public ForwardingOutlet {
  public:
   WrappedOutlet(ChannelRecords& records, const SensorChannelSpec& spec,
                 std::unique_ptr<Outlet> outlet)
-      : records_(records),
+      : ForwardingOutlet(std::move(outlet)),
+        records_(records),
         spec_(spec),
-        outlet_(std::move(outlet)),
         states_(std::max<std::size_t>(1, spec.bodies.size())),
         felt_(states_.size()) {}
 
   bool Send(const Reading& reading, VirtualTime arrives) override {
     if (records_.sink_ != nullptr) Record(reading, arrives);
-    return outlet_->Send(reading, arrives);
+    return ForwardingOutlet::Send(reading, arrives);
   }
-  VirtualTime NextDue() const override { return outlet_->NextDue(); }
-  std::size_t Kept() const override { return outlet_->Kept(); }
-  bool HandOver(VirtualTime now) override { return outlet_->HandOver(now); }
-  std::string WhyUnheard() const override { return outlet_->WhyUnheard(); }
-  std::string WhatWasLost() const override { return outlet_->WhatWasLost(); }
 
  private:
   void Record(const Reading& reading, VirtualTime arrives) {
@@ -103,7 +99,6 @@ class ChannelRecords::WrappedOutlet final : public Outlet {
 
   ChannelRecords& records_;
   const SensorChannelSpec& spec_;
-  std::unique_ptr<Outlet> outlet_;
   std::vector<Topic> states_, felt_;  // of each body; other sensors use the first
 };
 

@@ -40,8 +40,8 @@ class JointForce : public ForestForce {
   std::vector<double> inertia_;  // inertia that each joint moves: kg m^2 or kg
 };
 
-// How long a joint takes to a stop, as fast as it is; less where it would be through it before
-// error control sees it.
+// How long a joint takes to a stop at its present speed, in s; at least the time that it takes to
+// notice a joint in a stop.
 double TimeToStop(const Joint& joint, double position, double velocity);
 
 }  // namespace tcs

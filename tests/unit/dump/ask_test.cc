@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <x86gprintrin.h>
@@ -175,6 +176,38 @@ TEST(ChooseRun, GoesByFolderAndByProcess) {
   EXPECT_EQ(chosen("/var"), "no run writes to the folder '/var' just now");
   EXPECT_EQ(chosen("/no/such"), "there is no folder '/no/such'");
   EXPECT_EQ(chosen("999999999"), "there is no process 999999999");
+}
+
+// A client of a run starts a run, whose client it asks for.
+TEST(ChooseRun, OfRunsWithinEachOtherAProcessMeansTheInnermost) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t outer = fork();
+  if (outer == 0) {
+    if (fork() == 0 && fork() == 0) {
+      const pid_t pids[2] = {getppid(), getpid()};
+      if (write(ends[1], pids, sizeof pids) != sizeof pids) _exit(1);
+    }
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    for (;;) pause();
+  }
+  pid_t pids[2] = {};
+  ASSERT_EQ(read(ends[0], pids, sizeof pids), static_cast<ssize_t>(sizeof pids));
+  const auto [inner, client] = pids;
+  const auto chosen = [&, in = inner](pid_t named) {
+    std::vector<FoundRun> runs(2);
+    runs[0].coordinator = outer;
+    runs[1].coordinator = in;
+    return std::get<FoundRun>(ChooseRun(std::move(runs), std::to_string(named))).coordinator;
+  };
+  EXPECT_EQ(chosen(client), inner);
+  EXPECT_EQ(chosen(inner), inner);
+  EXPECT_EQ(chosen(outer), outer);
+  EXPECT_EQ(chosen(getpid()), outer);
+  kill(outer, SIGKILL);
+  EXPECT_EQ(waitpid(outer, nullptr, 0), outer);
+  close(ends[0]);
+  close(ends[1]);
 }
 
 // Whoever asks has the run's memory, too, and comes before it where its number is lower.

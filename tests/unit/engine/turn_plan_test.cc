@@ -72,6 +72,15 @@ TEST(TurnPlan, WhoOwesAllOfItsTurnIsNotDispatched) {
   EXPECT_FALSE(OnlyPays(TaskState::kReady, kStart, -kMs, horizon)) << "credit is no debt";
 }
 
+// It goes on, to read or to write, at the time that its clock shows.
+TEST(TurnPlan, WhoHoldsPaysAllBeforeItGoesOn) {
+  const VirtualTime horizon = kStart + kMs;
+  EXPECT_TRUE(OnlyPays(TaskState::kHolding, kStart, kNs, horizon));
+  EXPECT_FALSE(OnlyPays(TaskState::kHolding, kStart, kNone, horizon));
+  EXPECT_FALSE(OnlyPays(TaskState::kHolding, kStart, -kNs, horizon)) << "credit is no debt";
+  EXPECT_FALSE(OnlyPays(TaskState::kReady, kStart, kNs, horizon));
+}
+
 TEST(TurnPlan, ATurnOfNoLengthIsPaidByNothing) {
   EXPECT_TRUE(OnlyPays(TaskState::kReady, kStart, kNone, kStart));
   EXPECT_FALSE(OnlyPays(TaskState::kReady, kStart, -kNs, kStart)) << "its clock stands before that";
