@@ -6,6 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "tests/unit/times.h"
+
 namespace tcs {
 namespace {
 
@@ -13,7 +15,7 @@ namespace {
 class Telling final : public Outlet {
  public:
   bool Send(const Reading&, VirtualTime) override { return true; }
-  VirtualTime NextDue() const override { return RobotTime(7); }
+  VirtualTime NextDue() const override { return AtMs(7); }
   bool HandOver(VirtualTime) override { return true; }
   std::size_t Kept() const override { return 3; }
   std::string WhyUnheard() const override { return "unheard"; }
@@ -25,7 +27,7 @@ TEST(MeasurementLogTest, AnOutletThatIsLoggedSaysWhatItSaidBefore) {
   const SensorChannelSpec sensor;
   const auto outlet = log.Wrap(sensor, std::make_unique<Telling>());
   EXPECT_TRUE(outlet->Send({}, {}));
-  EXPECT_EQ(outlet->NextDue(), RobotTime(7));
+  EXPECT_EQ(outlet->NextDue(), AtMs(7));
   EXPECT_TRUE(outlet->HandOver({}));
   EXPECT_EQ(outlet->Kept(), 3u);
   EXPECT_EQ(outlet->WhyUnheard(), "unheard");
