@@ -48,6 +48,7 @@ bool PaceKeeper::Keep() {
       all_.home_processor.Lend();
     if (wait == HostDuration()) {
       if (all_.home_processor.TakeBack(run_.options.on_notice)) return true;
+      all_.pacing.WaitForProcessor();
       wait = Pacing::kLook;
     }
     if (!std::exchange(has_drained, true)) {

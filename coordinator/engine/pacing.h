@@ -31,6 +31,9 @@ class Pacing {
   HostDuration ToWait(VirtualTime next);
 
   const Pacer& pacer() const { return pacer_; }
+  // The run may act now, but others have its processor: it is held back until it is asked for again
+  // how long it has to wait.
+  void WaitForProcessor() { held_since_ = RunClock::Now(); }
   // Of the real time since the run began, for how long it was held back.
   HostDuration held() const { return held_; }
   // The host's time without the time held back: a thread that was held back is not to be taken for
