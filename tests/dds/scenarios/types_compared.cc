@@ -45,7 +45,10 @@ void Writer(Process& self) {
   self.peer.Meet("done");
   dds_offered_incompatible_qos_status_t status;
   for (const dds_entity_t writer : {other, strict}) {
-    OK(dds_get_offered_incompatible_qos_status(writer, &status));
+    WaitUntil("all is told", [&] {
+      OK(dds_get_offered_incompatible_qos_status(writer, &status));
+      return status.total_count > 0;
+    });
     dds_publication_matched_status_t matched;
     OK(dds_get_publication_matched_status(writer, &matched));
     Event("unsuitable: %u readers, %u matched, the last for policy %u", status.total_count,
@@ -126,14 +129,13 @@ void Reader(Process& self) {
   self.peer.Meet("matched");
   early.TakeAll(2);
   Take<dds_evolved_Old>(beside, "old beside it", 1, TellOld);
-  WaitUntil("all is told", [&] {
-    dds_requested_incompatible_qos_status_t status;
-    OK(dds_get_requested_incompatible_qos_status(strict, &status));
-    return status.total_count > 0;
-  });
   for (const dds_entity_t reader : {other, strict}) {
     dds_requested_incompatible_qos_status_t status;
-    OK(dds_get_requested_incompatible_qos_status(reader, &status));
+    // Types are asked for one by one, and may come in any order.
+    WaitUntil("all is told", [&] {
+      OK(dds_get_requested_incompatible_qos_status(reader, &status));
+      return status.total_count > 0;
+    });
     dds_subscription_matched_status_t matched;
     OK(dds_get_subscription_matched_status(reader, &matched));
     Event("unsuitable: %u writers, %u matched, the last for policy %u", status.total_count,
