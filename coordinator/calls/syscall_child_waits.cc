@@ -48,9 +48,9 @@ void SyscallChildWaits::Await(Task& task, const TrappedCall& call) {
   const std::uint64_t options = call.args[call.number == SYS_wait4 ? 2 : 3];
   task.trap_continues = true;
   const bool stops = (options & (WUNTRACED | WCONTINUED)) != 0;
-  unknown_.LookFor(*task.process);
+  unregistered_.LookFor(*task.process);
   const bool has_living =
-      unknown_.AreOf(*task.process) ||
+      unregistered_.AreOf(*task.process) ||
       std::any_of(run_.table.processes().begin(), run_.table.processes().end(),
                   [&](const Process& p) { return p.parent == task.process->pid && !p.dead; });
   constexpr std::uint64_t kOfDescriptor = 3;  // P_PIDFD, which glibc has since 2.36

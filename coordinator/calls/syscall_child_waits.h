@@ -12,8 +12,8 @@ namespace tcs {
 
 class SyscallChildWaits {
  public:
-  SyscallChildWaits(RunState& run, Waker& waker, UnregisteredChildren& unknown)
-      : run_(run), waker_(waker), unknown_(unknown) {}
+  SyscallChildWaits(RunState& run, Waker& waker, UnregisteredChildren& unregistered)
+      : run_(run), waker_(waker), unregistered_(unregistered) {}
 
   // The thread waits, or the kernel has what the call asks for and carries it out.
   void Await(Task& task, const TrappedCall& call);
@@ -23,7 +23,7 @@ class SyscallChildWaits {
  private:
   RunState& run_;
   Waker& waker_;
-  UnregisteredChildren& unknown_;
+  UnregisteredChildren& unregistered_;
 };
 
 }  // namespace tcs

@@ -81,7 +81,11 @@ void ClockPages::Write(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   // A thread that priority has stopped in the midst of its turn has had its answer, and a trapped
   // call is answered by its result. If a signal handler of its program lies on top of an exchange,
   // the slot has the content of that exchange, put back.
-  if (!task.parked || task.trap_id != 0) return;
+  if (task.parked && task.trap_id == 0) WriteAnswer(task);
+}
+
+void ClockPages::WriteAnswer(const Task& task) {
+  shm::ThreadSlot& slot = SlotOf(task);
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];
   slot.wake_reason.store(task.reason);

@@ -14,6 +14,8 @@ class ClockPages : public EnginePart {
   using EnginePart::EnginePart;
 
   void Write(Task& task, VirtualTime horizon, VirtualTime idle_until);
+  // Writes the answer to the thread's last exchange into its slot.
+  static void WriteAnswer(const Task& task);
   // Grants what the thread may do without asking.
   void GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const;
 

@@ -97,9 +97,7 @@ void GateKeeper::OpenGate(Task& task) {
 void GateKeeper::AnswerBelow(Task& task) {
   shm::ThreadSlot& slot = SlotOf(task);
   if (slot.gate.load() == shm::kGateOpen) return;
-  slot.reply[0] = task.reply[0];
-  slot.reply[1] = task.reply[1];
-  slot.wake_reason.store(task.reason);
+  ClockPages::WriteAnswer(task);
   HostCpu::OpenGate(slot);
 }
 

@@ -16,8 +16,6 @@ bool ChangeWaitSet(int set, int operation, int fd, epoll_event* event) {
   return epoll_ctl(set, operation, fd, event) == 0;
 }
 
-bool HasEvents(int set) { return IsReadable(set); }
-
 std::size_t WaitForEvents(int set, std::span<epoll_event> events, HostDuration timeout) {
   const timespec at_most = shm::ToTimespec(timeout.ns());
   const int found = epoll_pwait2(set, events.data(), static_cast<int>(events.size()),

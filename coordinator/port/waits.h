@@ -16,8 +16,6 @@ namespace tcs {
 // A set of descriptors that the coordinator waits for, as epoll_create1 and epoll_ctl have it.
 int MakeWaitSet();
 bool ChangeWaitSet(int set, int operation, int fd, epoll_event* event);
-// Whether the set has an event now.
-bool HasEvents(int set);
 
 // Waits until the set has events, which are put into `events`, and at most so long (negative:
 // without limit). Returns how many there are. While the coordinator waits the programs' threads
@@ -26,7 +24,7 @@ std::size_t WaitForEvents(int set, std::span<epoll_event> events, HostDuration t
 
 // Waits until there is something to read, or at most so long.
 void AwaitReadable(int fd, HostDuration at_most);
-// Whether there is something to read now, or the pipe's other end is closed.
+// Whether there is something to read now: an event, of a set; or a pipe's other end is closed.
 bool IsReadable(int fd);
 // As read(2), of a pipe that does not wait.
 ssize_t ReadPipe(int fd, void* to, std::size_t size);

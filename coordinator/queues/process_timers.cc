@@ -301,10 +301,10 @@ void ProcessTimers::Accept(Id id, VirtualTime now) {
   if (timer->IsShort() && !timer->IsOnCpuTime()) {
     // An expiration at this instant has a signal of its own.
     timer->AddOverruns(timer->TakeExpirations(OwnTimeOf(now, timer->lead).ns() - 1));
+    FindNext();
   }
   timer->Accept();
   timer->was_seen_accepted = true;
-  FindNext();
 }
 
 void ProcessTimers::Lost(Id id) {

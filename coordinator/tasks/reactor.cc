@@ -65,7 +65,7 @@ std::size_t Reactor::Wait(HostDuration timeout) {
   return count_;
 }
 
-bool Reactor::HasMore() const { return HasEvents(epoll_.get()); }
+bool Reactor::HasMore() const { return IsReadable(epoll_.get()); }
 
 PollOutcome Reactor::Handle(EventTime when) {
   PollOutcome found;

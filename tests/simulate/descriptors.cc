@@ -64,6 +64,7 @@ ssize_t Descriptors::Read(int fd, void* to, std::size_t size) {
 }
 
 bool Descriptors::IsReadable(int fd) const {
+  if (const auto set = sets_.find(fd); set != sets_.end()) return HasEvents(set->second);
   const auto found = files_.find(fd);
   return found != files_.end() && found->second.IsReadable();
 }
@@ -88,10 +89,8 @@ bool Descriptors::IsReady(const WaitSet& set, int fd) const {
   return IsReadable(fd) && set.awaited.contains(fd);
 }
 
-bool Descriptors::HasEvents(int set) const {
-  const auto found = sets_.find(set);
-  return found != sets_.end() && std::any_of(found->second.ready.begin(), found->second.ready.end(),
-                                             [&](int fd) { return IsReady(found->second, fd); });
+bool Descriptors::HasEvents(const WaitSet& set) const {
+  return std::any_of(set.ready.begin(), set.ready.end(), [&](int fd) { return IsReady(set, fd); });
 }
 
 std::size_t Descriptors::TakeEvents(int set, std::span<epoll_event> events) {

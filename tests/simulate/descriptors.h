@@ -36,11 +36,11 @@ class Descriptors {
   // What there is, at most so much; -1 and EAGAIN if that is nothing.
   ssize_t Read(int fd, void* to, std::size_t size);
 
+  // A set is while it has events.
   bool IsReadable(int fd) const;
 
   // As epoll_ctl.
   bool ChangeSet(int set, int operation, int fd, const epoll_event* event);
-  bool HasEvents(int set) const;
   std::size_t TakeEvents(int set, std::span<epoll_event> events);
 
  private:
@@ -56,6 +56,7 @@ class Descriptors {
 
   void BecameReady(int fd);
   bool IsReady(const WaitSet& set, int fd) const;
+  bool HasEvents(const WaitSet& set) const;
 
   std::map<int, File> files_;
   std::map<int, int> pipes_;

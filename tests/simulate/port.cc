@@ -196,10 +196,9 @@ int MakeWaitSet() { return OpenEmpty(); }
 bool ChangeWaitSet(int set, int operation, int fd, epoll_event* event) {
   return Kernel::This().descriptors().ChangeSet(set, operation, fd, event);
 }
-bool HasEvents(int set) { return Kernel::This().descriptors().HasEvents(set); }
 std::size_t WaitForEvents(int set, std::span<epoll_event> events, HostDuration timeout) {
   Kernel& kernel = Kernel::This();
-  const auto look = [&] { return kernel.descriptors().HasEvents(set); };
+  const auto look = [&] { return kernel.descriptors().IsReadable(set); };
   if (look()) {
     kernel.Spend(kCallNs);
   } else {

@@ -145,7 +145,7 @@ void SimProgram::OnSignal(int, siginfo_t* info, void*) {
 }
 
 std::int64_t SimTimer::NextNs() const {
-  if (number < 0 || (interval_ns == 0 && told > 0)) return INT64_MAX;
+  if (interval_ns == 0 && told > 0) return INT64_MAX;
   return first_ns + told * interval_ns;
 }
 
