@@ -35,7 +35,9 @@ void BlockDetection::LookAtDetector() {
 }
 
 bool BlockDetection::LetsOthersRun() {
-  if (all_.gate_keeper.says_call()) return false;  // the thread waits for us
+  // The thread waits for us. A thread that has spoken sleeps at its gate or in its call, and its
+  // message may have been read in the look before this one.
+  if (all_.gate_keeper.says_call() || run_.turn.HasSpoken()) return false;
   Task& task = *run_.turn.task();
   const char state = ThreadState(task.tid);
   if (run_.is_unprivileged && state == 'R') {

@@ -167,6 +167,28 @@ TEST_F(EngineTurns, WhatIsComputedOutOfTurnIsADebt) {
               0.01 * 20 * kMs + 200 * kUs);
 }
 
+// Its message has been read, and the coordinator looks once more before the turn ends. In that look
+// the detector tells that the thread sleeps: it waits for the answer, and nobody has cut it off.
+TEST_F(EngineTurns, AThreadThatHasSpokenIsNotTakenToBeCutOff) {
+  for (const bool has_levels : {true, false}) {
+    Begin({}, false, has_levels);
+    Task& task = Add({}, [] {});
+    Add({}, [] { Compute(10 * kMs); });  // the steps go on
+    ASSERT_TRUE(StepUntil([&] {
+      return task.state == TaskState::kWaiting &&
+             task.slot_memory->gate.load() == shm::kGateWaiting;
+    }));
+    task.parked = false;
+    run().turn.Begin(task, VirtualTime());
+    run().turn.notified = true;
+    EXPECT_FALSE(all().block_detection.LetsOthersRun());
+    EXPECT_NE(task.slot_memory->wake_reason.load(), shm::WakeReason::kCutOff);
+    EXPECT_FALSE(task.is_cut_off);
+    run().turn.End();
+    task.parked = true;
+  }
+}
+
 // Of set costs the same course on each host, whatever that does.
 TEST_F(EngineTurns, ARunOfSetCostsIsTheSameOnEachHost) {
   std::vector<std::vector<std::int64_t>> courses;
