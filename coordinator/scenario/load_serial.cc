@@ -14,12 +14,15 @@ constexpr std::size_t kLongestPath = 255;
 std::string LoadRobotOf(const YamlMap& map, const Scenario& scenario) {
   const std::vector<RobotSpec>& robots = scenario.robots;
   if (map.Find("robot") == nullptr && robots.size() == 1) return robots.front().name;
-  const YamlValue& value = map.Require("robot", "robot: " + robots.front().name);
+  // There is none where all robots have mistakes of their own.
+  const std::string example = robots.empty() ? "NAME" : robots.front().name;
+  const YamlValue& value = map.Require("robot", "robot: " + example);
   const std::string name = value.AsText();
   std::vector<std::string> known;
   for (const RobotSpec& robot : robots) known.push_back(robot.name);
   if (std::find(known.begin(), known.end(), name) == known.end()) {
-    value.Fail("names the unknown robot '" + name + "'; " + Suggest(name, known, "robots"));
+    value.FailAbout(name,
+                    "names the unknown robot '" + name + "'; " + Suggest(name, known, "robots"));
   }
   return name;
 }

@@ -60,6 +60,20 @@ channels:
                           HasSubstr("s.yaml:15: channels.hands.type is the unknown 'tcp'")));
 }
 
+TEST(Check, ASerialPortMayBeOfARobotThatHasMistakes) {
+  const ScenarioFolder folder;
+  EXPECT_THAT(MistakesIn(folder, R"(duration: 1s
+dynamics: {}
+bodies:
+  drone: {mass: 1, inertia: [1, 1, 1]}
+robots:
+  r: {clients: 3}
+channels:
+  one: {type: pty, sensors: {bodies: [drone], rate: 50, robot: r, device: /dev/ttyS0}}
+)"),
+              ElementsAre(HasSubstr("s.yaml:6: robots.r.clients")));
+}
+
 TEST(Check, DoesNotBlameWhatNamesSomethingThatIsWrong) {
   const ScenarioFolder folder;
   EXPECT_THAT(MistakesIn(folder, R"(duration: 1s
