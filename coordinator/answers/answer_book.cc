@@ -195,9 +195,12 @@ Response AnswerBook::UntilNow(Thread& thread, const Who& who, const Activation& 
                     .release_ns = activation.release_ns,
                     .start_ns = start_ns,
                     .end_ns = std::max(end_ns, start_ns)};
-  response.parts = {
-      .queued_ns = free_ns - activation.release_ns,
-      .away_ns = (ready_ns < 0 ? start_ns : std::clamp(ready_ns, free_ns, start_ns)) - free_ns};
+  const std::int64_t before_ns =
+      (ready_ns < 0 ? start_ns : std::clamp(ready_ns, free_ns, start_ns)) - free_ns;
+  const std::int64_t wakeup_ns = std::min(before_ns, activation.wakeup_ns);
+  response.parts = {.queued_ns = free_ns - activation.release_ns,
+                    .away_ns = before_ns - wakeup_ns,
+                    .wakeup_ns = wakeup_ns};
   AddCores(on_cores, executed_ns, response);
   return response;
 }
@@ -291,6 +294,7 @@ void AnswerBook::Judge(Kept& kept, Response response, std::int64_t period_ns, in
   late.total_ns += response.TookNs();
   late.queued_ns += parts.queued_ns;
   late.away_ns += parts.away_ns;
+  late.wakeup_ns += parts.wakeup_ns;
   late.executed_ns += parts.executed_ns;
   late.room_ns += parts.room_ns;
   Add(parts.cores_ns, late.others_ns);

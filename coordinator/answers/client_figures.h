@@ -28,6 +28,7 @@ struct LateTime {
   std::map<std::string, std::int64_t> others_ns;  // ready, while that client had the core
   std::map<std::string, std::int64_t> locks_ns;   // for a lock that the client's thread had
   std::int64_t away_ns = 0;                       // asleep, or waiting for something else
+  std::int64_t wakeup_ns = 0;                     // until the kernel had woken it
   std::int64_t room_ns = 0;                       // for others to take what it had sent
 };
 

@@ -13,6 +13,7 @@ namespace tcs {
 struct TimeParts {
   std::int64_t queued_ns = 0;    // the thread was still at earlier input
   std::int64_t away_ns = 0;      // before its start the thread slept, or waited for something else
+  std::int64_t wakeup_ns = 0;    // the kernel woke it
   std::int64_t executed_ns = 0;  // the thread had the core, or computed
   ByClient cores_ns;             // the thread was ready, and that client had the core
   ByClient locks_ns;             // in its midst, for a lock that the client's thread had

@@ -20,7 +20,7 @@ std::string ResponseLog::Open(const std::string& path, std::vector<std::string> 
   clients_ = std::move(clients);
   return file_.Open(path,
                     "client,thread,cause,release_ns,start_ns,end_ns,deadline_ns,queued_ns,away_ns,"
-                    "executed_ns,cores_ns,locks_ns,room_ns,rest_ns,whose");
+                    "wakeup_ns,executed_ns,cores_ns,locks_ns,room_ns,rest_ns,whose");
 }
 
 // "core:CLIENT=NS lock:CLIENT=NS", the client with the most time first.
@@ -55,9 +55,9 @@ void ResponseLog::Write(const Response& response) {
   const TimeParts& parts = response.parts;
   file_.Line(clients_[static_cast<std::size_t>(response.client)], response.thread,
              NameOf(response.cause), response.release_ns, response.start_ns, response.end_ns,
-             response.deadline_ns, parts.queued_ns, parts.away_ns, parts.executed_ns,
-             parts.cores_ns.TotalNs(), parts.locks_ns.TotalNs(), parts.room_ns, response.RestNs(),
-             WhoseOf(parts));
+             response.deadline_ns, parts.queued_ns, parts.away_ns, parts.wakeup_ns,
+             parts.executed_ns, parts.cores_ns.TotalNs(), parts.locks_ns.TotalNs(), parts.room_ns,
+             response.RestNs(), WhoseOf(parts));
 }
 
 }  // namespace tcs

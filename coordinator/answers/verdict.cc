@@ -94,6 +94,9 @@ std::string CauseOf(const ClientOutcome& client, const std::vector<ClientOutcome
     return fmt::format("it waited for a lock that {} had for {} of that time", whose,
                        Percent(std::min(1.0, Share(lock.second, rest))));
   }
+  if (late.wakeup_ns > 0 && 2 * late.wakeup_ns >= std::min(too_much, rest))
+    return fmt::format("waking it took {} of that time (cpu.wakeup of its robot)",
+                       Percent(std::min(1.0, Share(late.wakeup_ns, rest))));
   if (Share(late.executed_ns, rest) >= kNamed)
     return fmt::format("it computes up to {} at a time", Spoken(figures.times.execution.max()));
   return "it waited for something else in the midst of its work";

@@ -121,7 +121,11 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
   }
   if (outside_takes.has_value()) client.outside.takes = *outside_takes;
   if (allocation_cost.has_value()) client.fixed_allocation_cost = *allocation_cost;
-  scenario.robots.push_back({"computer", arguments.cores, arguments.speed, {client}});
+  RobotSpec& computer = scenario.robots.emplace_back();
+  computer.name = "computer";
+  computer.cores = arguments.cores;
+  computer.speed = arguments.speed;
+  computer.clients = {client};
   options.on_notice = [](const std::string& notice) { Say(notice); };
   WarningsAsTheyCome warnings;
   options.on_warning = [&warnings](const std::string& warning) { warnings.Take(warning); };

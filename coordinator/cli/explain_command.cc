@@ -90,6 +90,7 @@ void PrintJson(const explain::Told& told, const std::vector<const explain::Activ
                  {"late_ns", std::max<std::int64_t>(0, one->LateNs())},
                  {"queued_ns", one->queued_ns},
                  {"away_ns", one->away_ns},
+                 {"wakeup_ns", one->wakeup_ns},
                  {"executed_ns", one->executed_ns},
                  {"cores", SharesOf(one->cores)},
                  {"locks", SharesOf(one->locks)},

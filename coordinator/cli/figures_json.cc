@@ -86,7 +86,7 @@ void AddFigures(const ClientFigures& figures, nlohmann::ordered_json& client) {
         {"total_ns", figures.late.total_ns},       {"queued_ns", figures.late.queued_ns},
         {"executed_ns", figures.late.executed_ns}, {"others_ns", figures.late.others_ns},
         {"locks_ns", figures.late.locks_ns},       {"away_ns", figures.late.away_ns},
-        {"room_ns", figures.late.room_ns}};
+        {"wakeup_ns", figures.late.wakeup_ns},     {"room_ns", figures.late.room_ns}};
   }
   client["inputs"] = Json::array();
   for (const InputFigures& input : figures.inputs) client["inputs"].push_back(JsonOf(input));

@@ -182,6 +182,10 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
   }
   for (const RobotSpec& robot : scenario.robots) {
     json["robots"][robot.name] = {{"cores", robot.cores}, {"speed", robot.speed}};
+    if (robot.wakeup.median > VirtualDuration()) {
+      json["robots"][robot.name]["wakeup"] = {{"median_ns", robot.wakeup.median.ns()},
+                                              {"p99_ns", robot.wakeup.p99.ns()}};
+    }
     json["robots"][robot.name]["scheduler"] =
         robot.scheduler == SchedulerPolicy::kFixedPriority ? "fixed_priority" : "edf";
     if (answers) json["robots"][robot.name]["use"] = UseOfCores(robot, r);

@@ -34,7 +34,8 @@ VirtualTime Horizons::Of(Task& task, VirtualTime* idle_until) {
                                  .output = run_.root.NextOutput(),
                                  .acts_at_once = run_.IsFixed() || robot.is_ideal,
                                  .has_given_way = run_.root.HasGivenWay(cpu.leaf)});
-  *idle_until = horizon.idle;
+  // Each sleep is to last a wake-up longer, as the coordinator finds.
+  *idle_until = robot.wakeup.IsNone() ? horizon.idle : VirtualTime();
   return horizon.run;
 }
 

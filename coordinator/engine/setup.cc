@@ -227,6 +227,9 @@ void Setup::MakeRobots() {
     robot.is_ideal = spec.is_ideal;
     robot.is_ours = spec.is_ours;
     robot.outside_speed = spec.outside_speed;
+    if (spec.wakeup.median > VirtualDuration() && !run_.IsCallback()) {
+      robot.wakeup = WakeupLatency(spec.wakeup.median, spec.wakeup.p99, run_.scenario.seed);
+    }
     for (std::uint32_t core = 0; core < cores; ++core) {
       VirtualCpu& cpu = run_.cpus.emplace_back();
       cpu.robot = &robot;

@@ -13,7 +13,7 @@ namespace tcs::explain {
 
 namespace {
 
-enum class Kind { kQueued, kAway, kCore, kLock, kRoom, kExecuted, kRest };
+enum class Kind { kQueued, kAway, kWakeup, kCore, kLock, kRoom, kExecuted, kRest };
 
 struct Cause {
   Kind kind = Kind::kRest;
@@ -38,7 +38,8 @@ std::vector<Cause> CausesOf(const Activation& activation,
                           : client + std::string(RankOf(client, activation.client, clients));
   };
   std::vector<Cause> causes = {{Kind::kQueued, activation.queued_ns},
-                               {Kind::kAway, activation.away_ns}};
+                               {Kind::kAway, activation.away_ns},
+                               {Kind::kWakeup, activation.wakeup_ns}};
   for (const Share& share : activation.cores)
     causes.push_back({Kind::kCore, share.ns, name(share.client)});
   for (const Share& share : activation.locks)
@@ -56,6 +57,8 @@ std::string PartText(const Cause& cause) {
       return "in the queue: its thread was still at what had come earlier";
     case Kind::kAway:
       return "not looked at: its thread slept, or waited for something else";
+    case Kind::kWakeup:
+      return "waking its thread (cpu.wakeup)";
     case Kind::kCore:
       return cause.who + " had the core";
     case Kind::kLock:
@@ -80,6 +83,8 @@ std::string Because(const Cause& cause, const Activation& activation) {
                                      : "has not begun");
     case Kind::kAway:
       return fmt::format("for {} of it its thread slept, or waited for something else", time);
+    case Kind::kWakeup:
+      return fmt::format("waking its thread took {} of it (cpu.wakeup)", time);
     case Kind::kCore:
       return fmt::format("{} had the core for {} of it", cause.who, time);
     case Kind::kLock:

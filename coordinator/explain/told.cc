@@ -34,11 +34,10 @@ bool TakeShares(std::string_view whose, Activation* activation) {
 
 std::optional<Activation> ActivationOf(const CsvFields& fields) {
   Activation activation{.client = std::string(fields[0])};
-  const std::array<std::int64_t*, 10> numbers = {&activation.thread,      &activation.release_ns,
-                                                 &activation.start_ns,    &activation.end_ns,
-                                                 &activation.deadline_ns, &activation.queued_ns,
-                                                 &activation.away_ns,     &activation.executed_ns,
-                                                 &activation.room_ns,     &activation.rest_ns};
+  const std::array<std::int64_t*, 11> numbers = {
+      &activation.thread,      &activation.release_ns, &activation.start_ns, &activation.end_ns,
+      &activation.deadline_ns, &activation.queued_ns,  &activation.away_ns,  &activation.wakeup_ns,
+      &activation.executed_ns, &activation.room_ns,    &activation.rest_ns};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const std::optional<std::int64_t> number = ToInteger(fields[i + 1]);
     if (!number.has_value()) return std::nullopt;
@@ -121,21 +120,21 @@ LoadResult<Told> ReadTold(const std::string& folder) {
   const json summary = json::parse(ReadFile(folder + "/summary.json").value_or(""), nullptr, false);
   Told told{.chains = ReadChains(summary), .clients = ReadClients(summary)};
   const bool is_whole = !told.clients.empty();
-  const auto read = ReadCsv(folder + "/responses.csv",
-                            {"client", "thread", "release_ns", "start_ns", "end_ns", "deadline_ns",
-                             "queued_ns", "away_ns", "executed_ns", "room_ns", "rest_ns", "whose"},
-                            [&](const CsvFields& fields) {
-                              std::optional<Activation> activation = ActivationOf(fields);
-                              if (!activation.has_value()) return false;
-                              Client& client = told.clients[activation->client];
-                              if (!is_whole && activation->deadline_ns > 0)
-                                client.has_deadline = true;
-                              if (activation->end_ns <= client.counted_after_ns) return true;
-                              // Nobody expects such a client to keep a period.
-                              if (!client.has_deadline) activation->deadline_ns = 0;
-                              told.activations.push_back(std::move(*activation));
-                              return true;
-                            });
+  const auto read =
+      ReadCsv(folder + "/responses.csv",
+              {"client", "thread", "release_ns", "start_ns", "end_ns", "deadline_ns", "queued_ns",
+               "away_ns", "wakeup_ns", "executed_ns", "room_ns", "rest_ns", "whose"},
+              [&](const CsvFields& fields) {
+                std::optional<Activation> activation = ActivationOf(fields);
+                if (!activation.has_value()) return false;
+                Client& client = told.clients[activation->client];
+                if (!is_whole && activation->deadline_ns > 0) client.has_deadline = true;
+                if (activation->end_ns <= client.counted_after_ns) return true;
+                // Nobody expects such a client to keep a period.
+                if (!client.has_deadline) activation->deadline_ns = 0;
+                told.activations.push_back(std::move(*activation));
+                return true;
+              });
   if (const auto* error = std::get_if<LoadError>(&read)) {
     return LoadError{error->message +
                      "; it is in the folder of a run by `tcsim run` of this version of tcs"};

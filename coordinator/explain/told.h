@@ -24,7 +24,7 @@ struct Activation {
   std::int64_t thread = 0;  // 0: the client's first
   std::int64_t release_ns = 0, start_ns = 0, end_ns = 0;
   std::int64_t deadline_ns = 0;  // from the release; 0: there is none
-  std::int64_t queued_ns = 0, away_ns = 0, executed_ns = 0, room_ns = 0, rest_ns = 0;
+  std::int64_t queued_ns = 0, away_ns = 0, wakeup_ns = 0, executed_ns = 0, room_ns = 0, rest_ns = 0;
   std::vector<Share> cores, locks;  // the client with the most first
 
   std::int64_t TookNs() const { return end_ns - release_ns; }

@@ -15,7 +15,7 @@
 #include <optional>
 
 #include "coordinator/scenario/network_spec.h"
-#include "coordinator/world/random_stream.h"
+#include "shm/random_stream.h"
 #include "shm/virtual_time.h"
 
 namespace tcs {

@@ -17,6 +17,24 @@ namespace {
 constexpr std::int64_t kMostCores = 64;
 constexpr double kSlowest = 1e-3;
 constexpr double kFastest = 1e3;
+constexpr VirtualDuration kLongestWakeup = VirtualDuration::Seconds(1);
+
+// `50us`, or {median: 20us, p99: 80us}.
+WakeupSpec LoadWakeup(const YamlValue& value) {
+  if (!value.IsMap()) {
+    const VirtualDuration always = value.AsDuration();
+    if (always > kLongestWakeup) value.Fail("is " + value.AsText() + "; it must be at most 1 s");
+    return {always, always};
+  }
+  const YamlMap map = value.AsMap();
+  map.AllowOnly({"median", "p99"});
+  WakeupSpec wakeup;
+  wakeup.median = map.Require("median", "20us").AsPositiveDuration();
+  wakeup.p99 = map.Require("p99", "80us").AsPositiveDuration();
+  if (wakeup.p99 < wakeup.median) value.Fail("has a p99 that is below its median");
+  if (wakeup.p99 > kLongestWakeup) value.Fail("has a p99 of more than 1 s");
+  return wakeup;
+}
 
 void LoadCpu(const YamlValue& value, RobotSpec* robot) {
   if (!value.IsMap()) {
@@ -25,7 +43,7 @@ void LoadCpu(const YamlValue& value, RobotSpec* robot) {
     value.Fail("is '" + value.AsText() + "'; write ideal, or a map like {cores: 1, speed: 1.0}");
   }
   const YamlMap map = value.AsMap();
-  map.AllowOnly({"cores", "speed", "outside_speed"});
+  map.AllowOnly({"cores", "speed", "outside_speed", "wakeup"});
   if (const YamlValue* cores = map.Find("cores")) {
     robot->cores = static_cast<int>(cores->AsInteger(1, kMostCores));
   }
@@ -41,6 +59,8 @@ void LoadCpu(const YamlValue& value, RobotSpec* robot) {
       speed->Fail("is " + speed->AsText() + "; it must be between 0.001 and 1000");
     }
   }
+  if (const YamlValue* wakeup = map.Find("wakeup"))
+    wakeup->Try([&] { robot->wakeup = LoadWakeup(*wakeup); });
 }
 
 ClientClass LoadClass(const YamlValue& value) {

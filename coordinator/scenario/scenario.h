@@ -103,10 +103,17 @@ enum class SchedulerPolicy {
   kEarliestDeadlineFirst,  // among clients with deadlines, which precede all others
 };
 
+// How long after an event a thread that has waited for it is ready, as on a real kernel: at random,
+// half of the times up to `median` and 99 of 100 up to `p99`.
+struct WakeupSpec {
+  VirtualDuration median, p99;  // 0: none; p99 is not below the median
+};
+
 struct RobotSpec {
   std::string name;
   int cores = 1;
   double speed = 1.0;  // of one core, relative to the host's
+  WakeupSpec wakeup;
   std::vector<ClientSpec> clients;
   SchedulerPolicy scheduler = SchedulerPolicy::kFixedPriority;
   bool is_ideal = false;       // computing takes its programs no time

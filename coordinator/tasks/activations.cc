@@ -41,7 +41,8 @@ std::int64_t FirstExpiryAfter(const Process& process, std::int64_t looked_ns, st
 
 }  // namespace
 
-void Activations::Released(Task& task, shm::WakeReason reason, VirtualTime at) const {
+void Activations::Released(Task& task, shm::WakeReason reason, VirtualTime at,
+                           VirtualDuration wakeup) const {
   Process& process = *task.process;
   Activation& activation = task.activation;
   activation.cause = CauseOf(task, reason);
@@ -52,9 +53,10 @@ void Activations::Released(Task& task, shm::WakeReason reason, VirtualTime at) c
   if (has_own_clocks_)
     activation.release_ns = std::max(activation.release_ns, process.clock.shown().ns());
   activation.start_ns = -1;
+  activation.wakeup_ns = wakeup.ns();
   activation.charged_ns = std::max(activation.charged_ns, task.charged.ns());
   if (task.slot >= 0) shm::NoteWoken(task.slot_memory->receipts);
-  TellOfBeginning(task, activation.release_ns);
+  TellOfBeginning(task, activation.release_ns + activation.wakeup_ns);
 }
 
 void Activations::TellOfBeginning(const Task& task, std::int64_t at_ns) const {
@@ -122,8 +124,11 @@ void Activations::Next(Task& task, ProgramTime now, VirtualDuration charged,
   ++task.activations;
   const std::int64_t before_ns = activation.start_ns;
   const bool by_message = receipt.of == shm::Receipts::Of::kMessage;
-  activation = {by_message ? ReleaseCause::kInput : ReleaseCause::kTime, now_ns, now_ns, charged_ns,
-                work};
+  activation = {.cause = by_message ? ReleaseCause::kInput : ReleaseCause::kTime,
+                .release_ns = now_ns,
+                .start_ns = now_ns,
+                .charged_ns = charged_ns,
+                .work = work};
   if (receipt.release_ns.has_value()) {
     activation.release_ns = *receipt.release_ns;
     activation.start_ns = std::max(now_ns, activation.release_ns);

@@ -44,8 +44,9 @@ class Activations {
   // The thread is there, for the first time.
   void Starts(const Task& task) const { TellOfBeginning(task, task.activation.release_ns); }
   // The thread's wait, which it is still in, ends for that reason. An event that was due before the
-  // thread's robot could look at it counts from when it was due.
-  void Released(Task& task, shm::WakeReason reason, VirtualTime at) const;
+  // thread's robot could look at it counts from when it was due. The thread is ready `wakeup`
+  // later.
+  void Released(Task& task, shm::WakeReason reason, VirtualTime at, VirtualDuration wakeup) const;
   // The thread waits again, or dies.
   void Idles(Task& task, bool dies = false);
   // Takes note of what the thread has received since its dispatch without having waited, up to

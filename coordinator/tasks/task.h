@@ -18,6 +18,7 @@
 #include "coordinator/os/descriptor_broker.h"
 #include "coordinator/policy/robot_scheduler.h"
 #include "coordinator/policy/temporal_consistency.h"
+#include "coordinator/policy/wakeup_latency.h"
 #include "coordinator/port/proc_files.h"
 #include "coordinator/port/traps.h"
 #include "coordinator/port/unique_fd.h"
@@ -270,11 +271,12 @@ struct Robot {
   std::string name;
   double speed;
   double outside_speed = 1.0;  // virtual seconds for each real one that is waited outside
-  std::uint32_t number = 0;    // in the scenario's order, from 1 on
-  bool is_ideal = false;       // the robot's threads are charged nothing
-  bool is_ours = false;        // tcsim's own: no run goes on for its programs
-  bool is_reached = false;     // nothing is local to it any more (calls/local_sockets.h)
-  std::uint64_t acts = 0;      // turns of its threads that did more than spin
+  WakeupLatency wakeup;
+  std::uint32_t number = 0;  // in the scenario's order, from 1 on
+  bool is_ideal = false;     // the robot's threads are charged nothing
+  bool is_ours = false;      // tcsim's own: no run goes on for its programs
+  bool is_reached = false;   // nothing is local to it any more (calls/local_sockets.h)
+  std::uint64_t acts = 0;    // turns of its threads that did more than spin
   // Others than the robot's own programs send it signals (engine/turns_beside.h).
   bool is_disturbed = false;
   RobotScheduler scheduler;

@@ -122,24 +122,36 @@ void Waker::ShowObjectWaiters() {
   }
 }
 
+// The robot's kernel takes that long to have a thread ready. What stands for a kernel's or a
+// library's own work is ready at once: the deliverer of DDS messages, and threads that wait for it.
+VirtualDuration Waker::WakeupOf(const Task& task) {
+  const bool is_for_library = task.is_deliverer || task.Awaits<awaited::Deliverer>() != nullptr ||
+                              task.Awaits<awaited::Room>() != nullptr ||
+                              task.Awaits<awaited::OthersRun>() != nullptr;
+  if (!task.wait.has_value() || is_for_library) return {};
+  return task.process->robot->wakeup.Of(task.order, task.activations);
+}
+
 void Waker::Wake(Task& task, shm::WakeReason reason, EventTime when) {
   if (task.state == TaskState::kDead) return;
   const bool waited = task.wait.has_value(), reads = waited && LooksAtOthers(*task.wait);
   const bool for_messages = task.Awaits<awaited::Messages>() != nullptr;
+  const VirtualDuration wakeup = WakeupOf(task);
   const bool outside =
       when.from_outside || (run_.turn.lasts() && !run_.turn.IsOn(*task.process->robot));
   const bool goes_first = outside && waited && SchedulerOf(task).PreemptsOnWakeup(task.order);
   if (outside && reads && !for_messages) NoteLateness(task, when.at, goes_first);
   if (waited) {
     ++task.activations;
-    activations_.Released(task, reason, when.at);
+    activations_.Released(task, reason, when.at, wakeup);
     task.debt = std::max(VirtualDuration(), task.debt);  // credit ends with the activation
   }
-  task.ComeTo(std::max({task.reached, when.at, EarliestWake()}));
+  const VirtualTime seen = std::max({task.reached, when.at, EarliestWake()});
+  task.ComeTo(seen + wakeup);
   if (waited) {
     // Where a more urgent thread ran on, the kernel's timer would still have been in time.
     const bool timed = reason == shm::WakeReason::kDeadline;
-    const VirtualTime released = timed ? std::min(task.wait->deadline, task.reached) : task.reached;
+    const VirtualTime released = timed ? std::min(task.wait->deadline, seen) : seen;
     SchedulerOf(task).WakeUp(task.order, released, outside);
   }
   // Others may have come further: the thread gets a message that is due later than its own time

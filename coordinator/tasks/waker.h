@@ -86,6 +86,7 @@ class Waker {
   int unseen() const { return unseen_; }  // threads in TaskState::kUnseen
 
  private:
+  static VirtualDuration WakeupOf(const Task& task);
   void ShowObjectWaiters();
 
   RunState& run_;

@@ -21,6 +21,7 @@ std::string_view NameOf(ReleaseCause cause);
 struct Activation {
   ReleaseCause cause = ReleaseCause::kStart;
   std::int64_t release_ns = 0;  // the thread became ready
+  std::int64_t wakeup_ns = 0;   // and could run so much later
   std::int64_t start_ns = -1;   // the thread ran first; -1: not yet
   std::int64_t charged_ns = 0;  // the thread's highest charge before
   shm::WorkCounts work{};       // done by the thread before

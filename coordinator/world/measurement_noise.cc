@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "coordinator/world/random_stream.h"
+#include "shm/random_stream.h"
 #include "simbody_bridge/link_motion.h"
 
 namespace tcs {

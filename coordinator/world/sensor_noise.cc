@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "coordinator/world/random_stream.h"
+#include "shm/random_stream.h"
 #include "simbody_bridge/link_motion.h"
 
 namespace tcs {

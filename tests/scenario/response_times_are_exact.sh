@@ -136,7 +136,7 @@ if exact: assert clients["alone/a"]["jitter_ns"] <= 2000 < 1_000_000 < clients["
 # The parts are the whole.
 for client, of in rows.items():
     for row in of:
-        parts = sum(row[part] for part in ("queued_ns", "away_ns", "executed_ns", "cores_ns", "locks_ns", "room_ns"))
+        parts = sum(row[part] for part in ("queued_ns", "away_ns", "wakeup_ns", "executed_ns", "cores_ns", "locks_ns", "room_ns"))
         whole = row["end_ns"] - row["release_ns"]
         assert parts + row["rest_ns"] == whole, row
         assert row["rest_ns"] == 0 if exact else abs(row["rest_ns"]) <= 0.01 * whole + 50_000, row

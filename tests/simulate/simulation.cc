@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kUs = 1'000, kMs = 1'000'000;
 constexpr int kThreads = 8;
+constexpr VirtualDuration kWakeupP99 = VirtualDuration::Microseconds(80);
 
 }  // namespace
 
@@ -30,6 +31,7 @@ Scenario Simulation::ScenarioOf(Luck& luck) {
     constexpr double kSpeeds[] = {1.0, 1.0, 0.5, 0.25, 1.5, 2.0};
     spec.speed = kSpeeds[luck.Between(0, 5)];
     spec.is_ideal = luck.OnceIn(8);
+    if (scenario.seed % 8 == 0 && !spec.is_ideal) spec.wakeup = {kWakeupP99 / 4, kWakeupP99};
     if (luck.OnceIn(4)) spec.scheduler = SchedulerPolicy::kEarliestDeadlineFirst;
     for (std::int64_t clients = luck.Between(1, 2); clients > 0; --clients) {
       ClientSpec& client = spec.clients.emplace_back();
@@ -91,6 +93,8 @@ void Simulation::AddThread(const Robot& robot, Luck& luck, std::deque<SimLock>& 
   rules.has_own_core = robot.cpus.size() >= kThreads && !rules.has_kernel_waits;
   rules.slack_ns =
       static_cast<std::int64_t>(static_cast<double>(rules.slack_ns) / std::min(1.0, robot.speed));
+  // A handler may begin, and a sleep go on after it, each a wake-up later.
+  if (!robot.wakeup.IsNone()) rules.slack_ns += 2 * WakeupLatency::kMostTimesP99 * kWakeupP99.ns();
   if (!is_fixed_) rules.call_ns = 420 * kUs;
   rules.is_hostile = rules_.is_hostile && &robot == &run_.all().run.robots.back();
   SimProgram& program = programs_.emplace_back(luck.Next(), rules, locks, file_);

@@ -35,6 +35,7 @@ void Stage::Begin(const Robots& robots, bool is_fixed, bool has_levels) {
     spec.name = "robot" + std::to_string(i);
     spec.cores = robots.cores;
     spec.speed = robots.speed;
+    spec.wakeup = robots.wakeup;
     spec.is_ideal = robots.is_ideal;
     spec.scheduler = robots.scheduler;
   }

@@ -22,6 +22,7 @@ class Stage : public testing::Test {
   struct Robots {
     int count = 1, cores = 1;
     double speed = 1.0;
+    WakeupSpec wakeup{};
     bool is_ideal = false;
     SchedulerPolicy scheduler = SchedulerPolicy::kFixedPriority;
     std::int64_t drift_ns = kMs;

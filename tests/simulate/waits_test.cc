@@ -32,6 +32,44 @@ TEST_F(EngineWaits, IdleTimeIsJumpedOver) {
   EXPECT_LT(kernel().now_ns() - host_ns, kSecond);
 }
 
+// A thread is ready so much after what it has waited for; until then others have the core.
+TEST_F(EngineWaits, TheKernelTakesItsTimeToWakeAThread) {
+  constexpr VirtualDuration kWakeup = VirtualDuration::Microseconds(300);
+  for (const bool is_fixed : {true, false}) {
+    Begin({.wakeup = {kWakeup, kWakeup}}, is_fixed);
+    std::vector<std::int64_t> late_ns;
+    std::int64_t other_ns = 0, wakes_ns = 0, woken_ns = 0;
+    std::atomic<std::uint32_t> word{0};
+    Add({.priority = 10}, [&] {
+      for (int i = 1; i <= 10; ++i) {
+        SleepUntil(i * kMs);
+        late_ns.push_back(ReadClock() - i * kMs);
+      }
+      EXPECT_EQ(Futex(word, FUTEX_WAIT, 0), 0);
+      woken_ns = ReadClock();
+    });
+    AddBeside([&] {
+      Compute(is_fixed ? 0 : 8 * kMs);
+      other_ns = ReadClock();
+      SleepUntil(20 * kMs);
+      wakes_ns = ReadClock();
+      EXPECT_EQ(Futex(word, FUTEX_WAKE, 1), 1);
+    });
+    ASSERT_TRUE(StepUntil([&] { return woken_ns != 0; }));
+    ASSERT_EQ(late_ns.size(), 10u);
+    for (const std::int64_t ns : late_ns) {
+      EXPECT_GE(ns, kWakeup.ns());
+      EXPECT_LT(ns, kWakeup.ns() + 30 * kUs);
+    }
+    EXPECT_GE(woken_ns - wakes_ns, kWakeup.ns());
+    EXPECT_LT(woken_ns - wakes_ns, kWakeup.ns() + 50 * kUs);
+    // Nobody computes while the kernel wakes somebody, and nobody has to wait for that.
+    if (!is_fixed) {
+      EXPECT_NEAR(static_cast<double>(other_ns), 8.0 * kMs, 0.5 * kMs);
+    }
+  }
+}
+
 // Whom the kernel holds keeps nobody from the core, and is not earlier than others when it returns.
 TEST_F(EngineWaits, OthersGoOnWhileTheKernelHoldsAThread) {
   Begin({}, false);

@@ -246,5 +246,25 @@ TEST_F(AnswerBookTest, WhatItDidNotLookAtForItSleptIsApart) {
   EXPECT_EQ(told[0].RestNs(), kMs);
 }
 
+// Of the time before its thread is ready, the last part is the kernel's.
+TEST_F(AnswerBookTest, WakingAThreadIsAPartOfItsOwn) {
+  Open();
+  std::vector<Response> told;
+  book_.Tell([&](const Response& response) { told.push_back(response); });
+  book_.Took(kController, SampleOf(20 * kMs));
+  book_.Ready(kController, 33 * kMs);
+  book_.Ended(kController,
+              {.cause = ReleaseCause::kInput,
+               .release_ns = 20 * kMs,
+               .wakeup_ns = 3 * kMs,
+               .start_ns = 34 * kMs},
+              0, 36 * kMs, 2 * kMs);
+  EXPECT_EQ(Controller().late.wakeup_ns, 3 * kMs);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].parts.away_ns, 10 * kMs);
+  EXPECT_EQ(told[0].parts.wakeup_ns, 3 * kMs);
+  EXPECT_EQ(told[0].RestNs(), kMs);
+}
+
 }  // namespace
 }  // namespace tcs

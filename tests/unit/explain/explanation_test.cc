@@ -39,6 +39,15 @@ TEST(ExplanationTest, ThePartsAreTheWhole) {
             Late().TookNs());
 }
 
+TEST(ExplanationTest, WakingIsAPart) {
+  Activation activation = Late();
+  activation.cores.clear();
+  activation.wakeup_ns = 39 * kMs;
+  EXPECT_EQ(SentenceOn(activation, kClients),
+            "at 3.120 s r/controller answered 41 ms late, after 51 ms: waking its thread took "
+            "39 ms of it (cpu.wakeup)");
+}
+
 TEST(ExplanationTest, WhatHasNoDeadlineIsNotLate) {
   Activation activation = Late();
   activation.client = "r/planner";

@@ -11,8 +11,8 @@ namespace tcs::explain {
 namespace {
 
 constexpr const char* kHeader =
-    "client,thread,cause,release_ns,start_ns,end_ns,deadline_ns,queued_ns,away_ns,executed_ns,"
-    "cores_ns,locks_ns,room_ns,rest_ns,whose\n";
+    "client,thread,cause,release_ns,start_ns,end_ns,deadline_ns,queued_ns,away_ns,wakeup_ns,"
+    "executed_ns,cores_ns,locks_ns,room_ns,rest_ns,whose\n";
 
 class ToldTest : public testing::Test {
  protected:
@@ -30,9 +30,9 @@ class ToldTest : public testing::Test {
 
 TEST_F(ToldTest, StartsAndDeadlinesThatNobodyExpectsAreLeftOut) {
   Write("responses.csv", std::string(kHeader) +
-                             "r/a,0,time,0,0,5,10,0,0,5,0,0,0,0,\n"
-                             "r/a,2,input,10,12,25,10,1,0,9,2,3,0,0,lock:r/b=3 core:r/b=2\n"
-                             "r/b,0,time,0,0,50,10,0,0,50,0,0,0,0,\n");
+                             "r/a,0,time,0,0,5,10,0,0,0,5,0,0,0,0,\n"
+                             "r/a,2,input,10,12,25,10,1,0,0,9,2,3,0,0,lock:r/b=3 core:r/b=2\n"
+                             "r/b,0,time,0,0,50,10,0,0,0,50,0,0,0,0,\n");
   Write("summary.json", R"({"clients": {
       "r/a": {"priority": 3, "deadline": {"deadline_ns": 10}, "counted_after_ns": 5},
       "r/b": {"priority": 1, "deadline": null, "counted_after_ns": -1}}})");
@@ -59,7 +59,7 @@ TEST_F(ToldTest, WithoutTheTableOneSentenceSaysSo) {
 }
 
 TEST_F(ToldTest, ARunThatWasCutOffHasNoSummary) {
-  Write("responses.csv", std::string(kHeader) + "r/a,0,time,0,0,25,10,0,0,25,0,0,0,0,\nr/a,0,ti");
+  Write("responses.csv", std::string(kHeader) + "r/a,0,time,0,0,25,10,0,0,0,25,0,0,0,0,\nr/a,0,ti");
   const auto read = ReadTold(folder_);
   ASSERT_TRUE(std::holds_alternative<Told>(read));
   ASSERT_EQ(std::get<Told>(read).activations.size(), 1u);

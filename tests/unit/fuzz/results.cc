@@ -83,8 +83,8 @@ Files RunFiles(const std::string& folder) {
       "client,thread,cause,release_ns,start_ns,end_ns,charged_ns,calls,allocations\n";
   std::string dispatches = "row,virtual_start_ns,virtual_end_ns,real_start_ns,real_end_ns\n";
   std::string responses =
-      "client,thread,cause,release_ns,start_ns,end_ns,deadline_ns,queued_ns,away_ns,executed_ns,"
-      "cores_ns,locks_ns,room_ns,rest_ns,whose\n";
+      "client,thread,cause,release_ns,start_ns,end_ns,deadline_ns,queued_ns,away_ns,wakeup_ns,"
+      "executed_ns,cores_ns,locks_ns,room_ns,rest_ns,whose\n";
   for (int i = 0; i < 40; ++i) {
     const std::string start = std::to_string(i * 1'000'000),
                       end = std::to_string(i * 1'000'000 + 9);
@@ -92,7 +92,7 @@ Files RunFiles(const std::string& folder) {
                    "r/controller,0,time," + start + "," + end + "," + end + ",1000,15,0\n" +
                    "r/planner,3,thread," + start + "," + start + "," + end + ",9,1,0\n";
     responses += "r/controller,0,time," + start + "," + start + "," + end +
-                 ",10000000,4,0,1000,5,0,0,0,core:r/planner=5\n";
+                 ",10000000,4,0,0,1000,5,0,0,0,core:r/planner=5\n";
     dispatches += "r/planner #3," + start + "," + end + "," + start + "," + end + "\ndynamics," +
                   start + "," + end + "," + start + "," + end + "\n";
   }

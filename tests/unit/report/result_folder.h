@@ -82,11 +82,11 @@ class ResultFolderTest : public ::testing::Test {
           "r/planner,3,input,0,0,9,9\n"
           "r/controller,0,time,0,7000,8000,1000\n");
     Write(folder + "/responses.csv",
-          "client,thread,cause,release_ns,start_ns,end_ns,deadline_ns,queued_ns,away_ns,"
+          "client,thread,cause,release_ns,start_ns,end_ns,deadline_ns,queued_ns,away_ns,wakeup_ns,"
           "executed_ns,cores_ns,locks_ns,room_ns,rest_ns,whose\n"
-          "r/controller,0,start,0,0,10,5000,0,0,10,0,0,0,0,\n"
-          "r/controller,0,time,1000,1000,5000,5000,0,0,4000,0,0,0,0,\n"
-          "r/controller,0,time,6000,12000,15000,5000,0,0,3000,6000,0,0,0,core:r/planner=6000\n");
+          "r/controller,0,start,0,0,10,5000,0,0,0,10,0,0,0,0,\n"
+          "r/controller,0,time,1000,1000,5000,5000,0,0,0,4000,0,0,0,0,\n"
+          "r/controller,0,time,6000,12000,15000,5000,0,0,0,3000,6000,0,0,0,core:r/planner=6000\n");
     Write(folder + "/dispatches.csv",
           "row,virtual_start_ns,virtual_end_ns,real_start_ns,real_end_ns\n"
           "r/planner,0,1000000,0,1000000\ndynamics,0,1000000,1000000,1100000\n"

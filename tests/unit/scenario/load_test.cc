@@ -60,6 +60,20 @@ TEST_F(LoadTest, TheWorldIsAsWritten) {
   EXPECT_THAT(scenario.world->bodies[1].initial.linear_velocity_mps, ElementsAre(1, 2, 3));
 }
 
+TEST_F(LoadTest, WakingAThreadTakesNoTimeUnlessGiven) {
+  const auto wakeup = [this](const std::string& cpu) {
+    return Load(WithReplaced("cpu: {cores: 4, speed: 0.5}", cpu)).robots[0].wakeup;
+  };
+  EXPECT_EQ(wakeup("cpu: {}").median, VirtualDuration());
+  EXPECT_EQ(wakeup("cpu: {wakeup: 0}").median, VirtualDuration());
+  const WakeupSpec always = wakeup("cpu: {wakeup: 50us}");
+  EXPECT_EQ(always.median, VirtualDuration::Microseconds(50));
+  EXPECT_EQ(always.p99, always.median);
+  const WakeupSpec spread = wakeup("cpu: {wakeup: {median: 20us, p99: 80us}}");
+  EXPECT_EQ(spread.median, VirtualDuration::Microseconds(20));
+  EXPECT_EQ(spread.p99, VirtualDuration::Microseconds(80));
+}
+
 TEST_F(LoadTest, TheRobotsAreAsWritten) {
   const Scenario scenario = Load(kGoodScenario);
   ASSERT_EQ(scenario.robots.size(), 1u);

@@ -48,7 +48,7 @@ models:
 robots:
   r:
     QQ
-    cpu: {QQ}
+    cpu: {wakeup: {QQ}, QQ}
     clients:
       c: {command: [./controller], working_directory: {fresh: true, QQ}, outside: {QQ}, QQ}
 network: {links: [{between: [r, r], QQ}], QQ}

@@ -1,4 +1,5 @@
-// Random numbers of a sensor: any seed, purpose and number give a stream of their own.
+// Random numbers of what the run makes up (sensors' errors, lost datagrams, wake-ups): any seed,
+// purpose and number give a stream of their own.
 #pragma once
 
 #include <cmath>
@@ -7,9 +8,8 @@
 
 namespace tcs {
 
-// The purposes of a sensor's random numbers. The streams of two purposes know nothing of each
-// other.
-enum class RandomPurpose : std::uint64_t { kFate = 1, kNoise, kBias };
+// The streams of two purposes know nothing of each other.
+enum class RandomPurpose : std::uint64_t { kFate = 1, kNoise, kBias, kWakeup };
 
 // Steele, Lea and Flood's SplitMix64.
 class RandomStream {
