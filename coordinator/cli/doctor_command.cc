@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <vector>
 
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/print.h"
@@ -11,7 +12,8 @@
 namespace tcs {
 
 int DoctorCommand(const DoctorArguments& arguments) {
-  const auto findings = Examine(PreloadLibrary());
+  std::vector<Finding> findings = Examine(PreloadLibrary());
+  if (arguments.calibrates) findings.push_back(Calibrate());
   const bool colour = isatty(STDOUT_FILENO) == 1 && getenv("NO_COLOR") == nullptr;
   Print("{}", arguments.as_json ? ToJson(findings) : ToText(findings, colour));
   return CanRun(findings) ? 0 : 1;

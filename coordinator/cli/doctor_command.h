@@ -5,6 +5,7 @@ namespace tcs {
 
 struct DoctorArguments {
   bool as_json = false;
+  bool calibrates = false;  // measures this machine, too
 };
 
 // The exit status: 0 if runs are possible here.

@@ -47,6 +47,30 @@ std::string TakeOrigins(const ExecArguments& arguments, RunOptions* options) {
              : "--date: '" + arguments.date + "' is not a day from 1971 to 2099 as 2005-03-18";
 }
 
+// A constant, or the median and the 99th percentile.
+std::string TakeWakeup(const std::string& text, WakeupSpec* wakeup) {
+  const std::size_t comma = text.find(',');
+  std::optional<VirtualDuration> median, p99;
+  if (std::string error =
+          TakeDuration("wakeup", text.substr(0, comma), &median,
+                       comma == std::string::npos ? Zero::kAllowed : Zero::kRefused);
+      !error.empty()) {
+    return error;
+  }
+  p99 = median;
+  if (comma != std::string::npos) {
+    p99.reset();
+    if (std::string error = TakeDuration("wakeup", text.substr(comma + 1), &p99); !error.empty())
+      return error;
+    if (!median.has_value() || !p99.has_value() || *p99 < *median)
+      return "--wakeup: '" + text + "' is not a median and a greater 99th percentile as 20us,80us";
+  }
+  if (!p99.has_value()) return {};
+  if (*p99 > WakeupSpec::kLongest) return "--wakeup: '" + text + "' is more than 1 s";
+  *wakeup = {*median, *p99};
+  return {};
+}
+
 // Says warnings as they come, in the order in which they come. The program has the same stderr: so
 // tcsim writes one line at a time, and none where the write might have to wait until somebody reads
 // what is there. A pipe that polls as writable has room for PIPE_BUF bytes, more than a line; a
@@ -88,6 +112,10 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
       !error.empty()) {
     return Fail(error);
   }
+  WakeupSpec wakeup;
+  if (const std::string error = TakeWakeup(arguments.wakeup, &wakeup); !error.empty()) {
+    return Fail(error);
+  }
   if (const std::string error =
           TakeDuration("outside-takes", arguments.outside_takes, &outside_takes);
       !error.empty()) {
@@ -125,6 +153,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
   computer.name = "computer";
   computer.cores = arguments.cores;
   computer.speed = arguments.speed;
+  computer.wakeup = wakeup;
   computer.clients = {client};
   options.on_notice = [](const std::string& notice) { Say(notice); };
   WarningsAsTheyCome warnings;

@@ -12,6 +12,7 @@ struct ExecArguments {
   std::vector<std::string> command;
   double speed = 1.0;  // of each core
   int cores = 1;
+  std::string wakeup;  // how long waking a thread takes, such as 50us or 20us,80us; empty: nothing
   bool patch_vdso = true;
   CycleCounter cycle_counter = CycleCounter::kVirtual;
   std::string call_cost;  // of one call under fixed accounting, such as 100ns; empty: as by default

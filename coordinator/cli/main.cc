@@ -219,6 +219,10 @@ int main(int argc, char** argv) {
   exec->add_option("--cores", cores, "how many processors the program has")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  std::string wakeup;
+  exec->add_option("--wakeup", wakeup,
+                   "TIME: how long waking a thread takes that has waited, or MEDIAN,P99, such as "
+                   "20us,80us (default: 0)");
   bool patch_vdso = true;
   exec->add_flag("--patch-vdso,!--no-patch-vdso", patch_vdso,
                  "leave the vDSO as it is: programs that read the kernel's clocks past the C "
@@ -355,6 +359,9 @@ int main(int argc, char** argv) {
   CLI::App* doctor = app.add_subcommand(
       "doctor", "check what this machine allows, and say how to mend what it does not");
   doctor->add_flag("--json", doctor_arguments.as_json, "for programs");
+  doctor->add_flag("--calibrate", doctor_arguments.calibrates,
+                   "measure for two seconds how long this machine takes to wake a thread, as "
+                   "cpu.wakeup has it");
 
   std::string accounting = "measured";
   bool no_wait = false;
@@ -435,7 +442,7 @@ int main(int argc, char** argv) {
     });
   }
   return tcs::RunGuarded([&] {
-    return exec->parsed() ? tcs::ExecCommand({command, speed, cores, patch_vdso,
+    return exec->parsed() ? tcs::ExecCommand({command, speed, cores, wakeup, patch_vdso,
                                               cycle_counter == "host" ? tcs::CycleCounter::kHost
                                                                       : tcs::CycleCounter::kVirtual,
                                               call_cost, allocation_cost,

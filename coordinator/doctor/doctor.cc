@@ -18,6 +18,7 @@
 #include <sstream>
 
 #include "coordinator/doctor/interpret.h"
+#include "coordinator/doctor/wakeups.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/own_computer.h"
 #include "coordinator/os/pipe.h"
@@ -131,6 +132,10 @@ std::vector<Finding> Examine(const std::string& preload_library) {
       TryShim(preload_library),
       JudgeSteal(TextOf("/proc/stat")),
   };
+}
+
+Finding Calibrate() {
+  return JudgeWakeups(MeasureWakeups(SCHED_OTHER).value_or(Wakeups()), MeasureWakeups(SCHED_FIFO));
 }
 
 std::string ToText(const std::vector<Finding>& findings, bool colour) {

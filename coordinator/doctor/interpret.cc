@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <sstream>
@@ -214,6 +216,17 @@ Finding JudgeSteal(const std::string& stat) {
   return {"stolen time", Verdict::kWarning, found,
           "it is never charged to clients, but runs take longer; use a machine with processors of "
           "its own"};
+}
+
+Finding JudgeWakeups(const Wakeups& ordinary, const std::optional<Wakeups>& real_time) {
+  const auto spec = [](const Wakeups& of) {
+    const auto us = [](std::int64_t ns) { return std::max<std::int64_t>(1, (ns + 500) / 1000); };
+    return fmt::format("cpu: {{wakeup: {{median: {}us, p99: {}us}}}}", us(of.median_ns),
+                       us(of.p99_ns));
+  };
+  std::string found = "of ordinary threads as " + spec(ordinary);
+  if (real_time.has_value()) found += ", of real-time ones as " + spec(*real_time);
+  return {"wake-ups", Verdict::kOk, found, ""};
 }
 
 }  // namespace tcs

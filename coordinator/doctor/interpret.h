@@ -5,6 +5,7 @@
 #include <string>
 
 #include "coordinator/doctor/finding.h"
+#include "coordinator/doctor/wakeups.h"
 #include "coordinator/os/own_computer.h"
 #include "coordinator/os/real_time_right.h"
 
@@ -38,5 +39,7 @@ Finding JudgeLibc(const std::string& version, bool tells_end_words);
 Finding JudgeShim(const std::string& path, int wait_status, const std::string& said);
 // `stat`: /proc/stat, since the machine's start.
 Finding JudgeSteal(const std::string& stat);
+// Of ordinary threads, and of real-time ones, if there can be any.
+Finding JudgeWakeups(const Wakeups& ordinary, const std::optional<Wakeups>& real_time);
 
 }  // namespace tcs

@@ -17,13 +17,13 @@ namespace {
 constexpr std::int64_t kMostCores = 64;
 constexpr double kSlowest = 1e-3;
 constexpr double kFastest = 1e3;
-constexpr VirtualDuration kLongestWakeup = VirtualDuration::Seconds(1);
 
 // `50us`, or {median: 20us, p99: 80us}.
 WakeupSpec LoadWakeup(const YamlValue& value) {
   if (!value.IsMap()) {
     const VirtualDuration always = value.AsDuration();
-    if (always > kLongestWakeup) value.Fail("is " + value.AsText() + "; it must be at most 1 s");
+    if (always > WakeupSpec::kLongest)
+      value.Fail("is " + value.AsText() + "; it must be at most 1 s");
     return {always, always};
   }
   const YamlMap map = value.AsMap();
@@ -32,7 +32,7 @@ WakeupSpec LoadWakeup(const YamlValue& value) {
   wakeup.median = map.Require("median", "20us").AsPositiveDuration();
   wakeup.p99 = map.Require("p99", "80us").AsPositiveDuration();
   if (wakeup.p99 < wakeup.median) value.Fail("has a p99 that is below its median");
-  if (wakeup.p99 > kLongestWakeup) value.Fail("has a p99 of more than 1 s");
+  if (wakeup.p99 > WakeupSpec::kLongest) value.Fail("has a p99 of more than 1 s");
   return wakeup;
 }
 

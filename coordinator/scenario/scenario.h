@@ -106,6 +106,8 @@ enum class SchedulerPolicy {
 // How long after an event a thread that has waited for it is ready, as on a real kernel: at random,
 // half of the times up to `median` and 99 of 100 up to `p99`.
 struct WakeupSpec {
+  static constexpr VirtualDuration kLongest = VirtualDuration::Seconds(1);
+
   VirtualDuration median, p99;  // 0: none; p99 is not below the median
 };
 

@@ -78,5 +78,13 @@ done
 for file in responses.csv dispatches.csv slow-cyclictest.out.log constant-pair.out.log; do
   cmp "$out/fixed/$file" "$out/again/$file" || fail "$file does not repeat"
 done
+# Without a scenario: a constant is told to the microsecond.
+"$tcsim" exec --accounting fixed --wakeup 300us -- cyclictest -q -p 80 -i 1000 -l 500 >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+grep -q 'Min: *30[012] .*Avg: *30[0-4] Max: *30[0-9]$' "$out/said" || fail "$(cat "$out/said")"
+for bad in 80us,20us 20us, 2s soon; do
+  "$tcsim" exec --wakeup $bad -- true >"$out/said" 2>&1 && fail "--wakeup $bad is taken"
+  grep -q "^tcsim: --wakeup" "$out/said" || fail "$bad: $(cat "$out/said")"
+done
+
 "$tcsim" explain "$out/fixed" slow/cyclictest --worst 1 >"$out/said" || fail "$(cat "$out/said")"
 grep -q "waking its thread" "$out/said" || fail "$(cat "$out/said")"

@@ -2,10 +2,12 @@
 
 #include <errno.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <algorithm>
 
 #include "coordinator/doctor/doctor.h"
+#include "coordinator/doctor/wakeups.h"
 
 namespace tcs {
 namespace {
@@ -147,6 +149,25 @@ TEST(Doctor, StolenTimeIsAShareOfTheBusyTime) {
   const Finding stolen = JudgeSteal("cpu  800 0 100 5000 0 0 0 100 0 0\n");
   EXPECT_EQ(stolen.verdict, Verdict::kWarning);
   EXPECT_NE(stolen.found.find("10.0 %"), std::string::npos);
+}
+
+TEST(Doctor, WakeupsAreSaidAsAScenarioHasThem) {
+  EXPECT_EQ(JudgeWakeups({.median_ns = 57'600, .p99_ns = 130'200}, {}).found,
+            "of ordinary threads as cpu: {wakeup: {median: 58us, p99: 130us}}");
+  EXPECT_EQ(JudgeWakeups({.median_ns = 57'600, .p99_ns = 130'200},
+                         Wakeups{.median_ns = 400, .p99_ns = 9'000})
+                .found,
+            "of ordinary threads as cpu: {wakeup: {median: 58us, p99: 130us}}, of real-time ones "
+            "as cpu: {wakeup: {median: 1us, p99: 9us}}");
+}
+
+// A sleep never ends early, and each policy that there can be is tried.
+TEST(Doctor, WakeupsAreMeasured) {
+  const auto ordinary = MeasureWakeups(SCHED_OTHER);
+  ASSERT_TRUE(ordinary.has_value());
+  EXPECT_GT(ordinary->median_ns, 0);
+  EXPECT_GE(ordinary->p99_ns, ordinary->median_ns);
+  EXPECT_FALSE(MeasureWakeups(-1).has_value());
 }
 
 TEST(Doctor, AMissingShimIsFoundByTryingIt) {

@@ -64,24 +64,32 @@ class ActivationsTest : public testing::Test {
 
 TEST_F(ActivationsTest, WhatWasDueBeforeItWasLookedAtWasDueThen) {
   WaitsFor<awaited::Time>(At(10 * kMs));
-  activations_.Released(task_, shm::WakeReason::kDeadline, At(12 * kMs));
+  activations_.Released(task_, shm::WakeReason::kDeadline, At(12 * kMs), VirtualDuration());
   Runs(12 * kMs, 15 * kMs, 3 * kMs);
   EXPECT_EQ(Lines(), std::vector<std::string>{"planner,0,time,10000000,12000000,15000000,3000000"});
 }
 
 TEST_F(ActivationsTest, TheCauseIsWhatTheWaitWasFor) {
   WaitsFor<awaited::Descriptors>();
-  activations_.Released(task_, shm::WakeReason::kGo, At(1 * kMs));
+  activations_.Released(task_, shm::WakeReason::kGo, At(1 * kMs), VirtualDuration());
   Runs(1 * kMs, 2 * kMs, {});
   WaitsFor<awaited::Futex>();
-  activations_.Released(task_, shm::WakeReason::kGo, At(3 * kMs));
+  activations_.Released(task_, shm::WakeReason::kGo, At(3 * kMs), VirtualDuration());
   Runs(3 * kMs, 4 * kMs, {});
   WaitsFor<awaited::Child>();
-  activations_.Released(task_, shm::WakeReason::kGo, At(5 * kMs));
+  activations_.Released(task_, shm::WakeReason::kGo, At(5 * kMs), VirtualDuration());
   Runs(5 * kMs, 6 * kMs, {});
   EXPECT_EQ(Lines(), (std::vector<std::string>{"planner,0,input,1000000,1000000,2000000,0",
                                                "planner,0,thread,3000000,3000000,4000000,0",
                                                "planner,0,child,5000000,5000000,6000000,0"}));
+}
+
+// The release is the event's time, however long the kernel takes to wake the thread.
+TEST_F(ActivationsTest, WakingAThreadIsPartOfItsActivation) {
+  WaitsFor<awaited::Descriptors>();
+  activations_.Released(task_, shm::WakeReason::kGo, At(1 * kMs), kMs / 2);
+  EXPECT_EQ(task_.activation.release_ns, (1 * kMs).ns());
+  EXPECT_EQ(task_.activation.wakeup_ns, (kMs / 2).ns());
 }
 
 TEST_F(ActivationsTest, WhoNeverRegisteredHasNone) {
@@ -92,13 +100,13 @@ TEST_F(ActivationsTest, WhoNeverRegisteredHasNone) {
 
 TEST_F(ActivationsTest, NoneIsChargedLessThanNothing) {
   WaitsFor<awaited::Descriptors>();
-  activations_.Released(task_, shm::WakeReason::kGo, VirtualTime());
+  activations_.Released(task_, shm::WakeReason::kGo, VirtualTime(), VirtualDuration());
   Runs({}, 1 * kMs, 5 * kMs);
   WaitsFor<awaited::Descriptors>();
-  activations_.Released(task_, shm::WakeReason::kGo, At(2 * kMs));
+  activations_.Released(task_, shm::WakeReason::kGo, At(2 * kMs), VirtualDuration());
   Runs(2 * kMs, 3 * kMs, -kMs);
   WaitsFor<awaited::Descriptors>();
-  activations_.Released(task_, shm::WakeReason::kGo, At(4 * kMs));
+  activations_.Released(task_, shm::WakeReason::kGo, At(4 * kMs), VirtualDuration());
   Runs(4 * kMs, 5 * kMs, 3 * kMs);
   EXPECT_EQ(Lines(), (std::vector<std::string>{"planner,0,input,0,0,1000000,5000000",
                                                "planner,0,input,2000000,2000000,3000000,0",
@@ -159,7 +167,7 @@ TEST_F(ActivationsTest, AClockThatIsAheadOfTheWorldsDoesNotGoBack) {
   Activations own(true);
   process_.clock.ComeTo(OwnAt(30 * kMs));
   WaitsFor<awaited::Descriptors>();
-  own.Released(task_, shm::WakeReason::kGo, At(10 * kMs));
+  own.Released(task_, shm::WakeReason::kGo, At(10 * kMs), VirtualDuration());
   EXPECT_EQ(task_.activation.release_ns, (30 * kMs).ns());
 }
 
