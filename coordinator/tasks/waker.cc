@@ -122,13 +122,13 @@ void Waker::ShowObjectWaiters() {
   }
 }
 
-// The robot's kernel takes that long to have a thread ready. What stands for a kernel's or a
-// library's own work is ready at once: the deliverer of DDS messages, and threads that wait for it.
+// The robot's kernel takes that long to have a thread ready. Waits that a thread natively would not
+// make end at once: what DDS by endpoints waits for in place of its library, and spinning.
 VirtualDuration Waker::WakeupOf(const Task& task) {
-  const bool is_for_library = task.is_deliverer || task.Awaits<awaited::Deliverer>() != nullptr ||
-                              task.Awaits<awaited::Room>() != nullptr ||
-                              task.Awaits<awaited::OthersRun>() != nullptr;
-  if (!task.wait.has_value() || is_for_library) return {};
+  const bool is_ours = task.Awaits<awaited::Deliverer>() != nullptr ||
+                       task.Awaits<awaited::Room>() != nullptr ||
+                       task.Awaits<awaited::OthersRun>() != nullptr;
+  if (!task.wait.has_value() || is_ours) return {};
   return task.process->robot->wakeup.Of(task.order, task.activations);
 }
 
@@ -157,7 +157,8 @@ void Waker::Wake(Task& task, shm::WakeReason reason, EventTime when) {
   // Others may have come further: the thread gets a message that is due later than its own time
   // when it is due.
   if (for_messages) {
-    task.messages_until = reason == shm::WakeReason::kDeadline ? task.wait->deadline : task.reached;
+    const bool is_due = reason == shm::WakeReason::kDeadline;
+    task.messages_until = is_due ? task.wait->deadline + wakeup : task.reached;
   }
   if (waited && task.wait->is_in_trapped_call) listeners_.ends_in_trapped_call(task, reason);
   Leave(task);
