@@ -82,7 +82,7 @@ done
 "$tcsim" exec --accounting fixed --wakeup 300us -- cyclictest -q -p 80 -i 1000 -l 500 >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 grep -q 'Min: *30[012] .*Avg: *30[0-4] Max: *30[0-9]$' "$out/said" || fail "$(cat "$out/said")"
 # Cyclone's threads are woken, too: one on each side, for one way of half a round trip each.
-mean() { timeout 100 "$tcsim" exec --cores 2 --accounting fixed --wakeup $1 -- sh -c 'ddsperf pong & ddsperf -D 2 ping; kill %1' 2>&1 |
+mean() { timeout 100 "$tcsim" exec --cores 2 --accounting fixed --wakeup $1 -- sh -c 'ddsperf pong & ddsperf -D 2 ping; kill $!' 2>&1 |
   sed -n 's/.* size 12 mean \([0-9]*\)\..*us min.*/\1/p' | tail -1; }
 quick=$(mean 0) slow=$(mean 300us)
 ((slow >= quick + 300 && slow <= quick + 303)) || fail "DDS takes $slow us one way, and $quick without wake-ups"
