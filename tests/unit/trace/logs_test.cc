@@ -27,8 +27,8 @@ class LogsTest : public ::testing::Test {
 TEST_F(LogsTest, AnActivationIsALine) {
   ActivationLog log;
   ASSERT_EQ(log.Open(path_, false), "");
-  log.Write("r/planner", 0, {ReleaseCause::kInput, 10, 12, 500}, 1010, 1400, {});
-  log.Write("r/planner", 7, {ReleaseCause::kThread, -1, 0, 0}, 0, 0, {});
+  log.Write("r/planner", 0, {ReleaseCause::kInput, 10, 0, 12, 500}, 1010, 1400, {});
+  log.Write("r/planner", 7, {ReleaseCause::kThread, -1, 0, 0, 0}, 0, 0, {});
   ASSERT_EQ(log.Close(), "");
   EXPECT_EQ(Written(),
             "client,thread,cause,release_ns,start_ns,end_ns,charged_ns\n"
@@ -39,7 +39,8 @@ TEST_F(LogsTest, AnActivationIsALine) {
 TEST_F(LogsTest, ALineTellsOfCallsAndAllocationsWhereTheyAreCounted) {
   ActivationLog log;
   ASSERT_EQ(log.Open(path_, true), "");
-  log.Write("r/planner", 0, {ReleaseCause::kInput, 10, 12, 500, {7, 250}}, 1010, 1400, {9, 1300});
+  log.Write("r/planner", 0, {ReleaseCause::kInput, 10, 0, 12, 500, {7, 250}}, 1010, 1400,
+            {9, 1300});
   ASSERT_EQ(log.Close(), "");
   EXPECT_EQ(Written(),
             "client,thread,cause,release_ns,start_ns,end_ns,charged_ns,calls,allocations\n"
