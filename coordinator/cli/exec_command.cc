@@ -50,25 +50,18 @@ std::string TakeOrigins(const ExecArguments& arguments, RunOptions* options) {
 // A constant, or the median and the 99th percentile.
 std::string TakeWakeup(const std::string& text, WakeupSpec* wakeup) {
   const std::size_t comma = text.find(',');
+  const bool differs = comma != std::string::npos;
   std::optional<VirtualDuration> median, p99;
-  if (std::string error =
-          TakeDuration("wakeup", text.substr(0, comma), &median,
-                       comma == std::string::npos ? Zero::kAllowed : Zero::kRefused);
-      !error.empty()) {
-    return error;
-  }
-  p99 = median;
-  if (comma != std::string::npos) {
-    p99.reset();
-    if (std::string error = TakeDuration("wakeup", text.substr(comma + 1), &p99); !error.empty())
-      return error;
-    if (!median.has_value() || !p99.has_value() || *p99 < *median)
-      return "--wakeup: '" + text + "' is not a median and a greater 99th percentile as 20us,80us";
-  }
-  if (!p99.has_value()) return {};
-  if (*p99 > WakeupSpec::kLongest) return "--wakeup: '" + text + "' is more than 1 s";
-  *wakeup = {*median, *p99};
-  return {};
+  std::string error = TakeDuration("wakeup", text.substr(0, comma), &median,
+                                   differs ? Zero::kRefused : Zero::kAllowed);
+  if (differs && error.empty()) error = TakeDuration("wakeup", text.substr(comma + 1), &p99);
+  if (!error.empty()) return error;
+  if (differs && (!median.has_value() || !p99.has_value() || *p99 < *median))
+    return "--wakeup: '" + text + "' is not a median and a greater 99th percentile as 20us,80us";
+  if (!median.has_value()) return {};
+  *wakeup = {*median, p99.value_or(*median)};
+  return wakeup->p99 > WakeupSpec::kLongest ? "--wakeup: '" + text + "' is more than 1 s"
+                                            : std::string();
 }
 
 // Says warnings as they come, in the order in which they come. The program has the same stderr: so

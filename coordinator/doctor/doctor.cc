@@ -135,7 +135,7 @@ std::vector<Finding> Examine(const std::string& preload_library) {
 }
 
 Finding Calibrate() {
-  return JudgeWakeups(MeasureWakeups(SCHED_OTHER).value_or(Wakeups()), MeasureWakeups(SCHED_FIFO));
+  return JudgeWakeups(MeasureWakeups(SCHED_OTHER), MeasureWakeups(SCHED_FIFO));
 }
 
 std::string ToText(const std::vector<Finding>& findings, bool colour) {

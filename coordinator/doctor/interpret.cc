@@ -218,13 +218,15 @@ Finding JudgeSteal(const std::string& stat) {
           "its own"};
 }
 
-Finding JudgeWakeups(const Wakeups& ordinary, const std::optional<Wakeups>& real_time) {
+Finding JudgeWakeups(const std::optional<Wakeups>& ordinary,
+                     const std::optional<Wakeups>& real_time) {
   const auto spec = [](const Wakeups& of) {
     const auto us = [](std::int64_t ns) { return std::max<std::int64_t>(1, (ns + 500) / 1000); };
     return fmt::format("cpu: {{wakeup: {{median: {}us, p99: {}us}}}}", us(of.median_ns),
                        us(of.p99_ns));
   };
-  std::string found = "of ordinary threads as " + spec(ordinary);
+  std::string found = ordinary.has_value() ? "of ordinary threads as " + spec(*ordinary)
+                                           : "of ordinary threads not to be measured here";
   if (real_time.has_value()) found += ", of real-time ones as " + spec(*real_time);
   return {"wake-ups", Verdict::kOk, found, ""};
 }

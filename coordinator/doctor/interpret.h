@@ -39,7 +39,8 @@ Finding JudgeLibc(const std::string& version, bool tells_end_words);
 Finding JudgeShim(const std::string& path, int wait_status, const std::string& said);
 // `stat`: /proc/stat, since the machine's start.
 Finding JudgeSteal(const std::string& stat);
-// Of ordinary threads, and of real-time ones, if there can be any.
-Finding JudgeWakeups(const Wakeups& ordinary, const std::optional<Wakeups>& real_time);
+// Of ordinary threads and of real-time ones, as far as there can be any.
+Finding JudgeWakeups(const std::optional<Wakeups>& ordinary,
+                     const std::optional<Wakeups>& real_time);
 
 }  // namespace tcs

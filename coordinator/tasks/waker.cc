@@ -125,11 +125,12 @@ void Waker::ShowObjectWaiters() {
 // The robot's kernel takes that long to have a thread ready. Waits that a thread natively would not
 // make end at once: what DDS by endpoints waits for in place of its library, and spinning.
 VirtualDuration Waker::WakeupOf(const Task& task) {
+  const WakeupLatency& latency = task.process->robot->wakeup;
+  if (latency.IsNone() || !task.wait.has_value()) return {};
   const bool is_ours = task.Awaits<awaited::Deliverer>() != nullptr ||
                        task.Awaits<awaited::Room>() != nullptr ||
                        task.Awaits<awaited::OthersRun>() != nullptr;
-  if (!task.wait.has_value() || is_ours) return {};
-  return task.process->robot->wakeup.Of(task.order, task.activations);
+  return is_ours ? VirtualDuration() : latency.Of(task.order, task.activations);
 }
 
 void Waker::Wake(Task& task, shm::WakeReason reason, EventTime when) {

@@ -152,9 +152,9 @@ TEST(Doctor, StolenTimeIsAShareOfTheBusyTime) {
 }
 
 TEST(Doctor, WakeupsAreSaidAsAScenarioHasThem) {
-  EXPECT_EQ(JudgeWakeups({.median_ns = 57'600, .p99_ns = 130'200}, {}).found,
+  EXPECT_EQ(JudgeWakeups(Wakeups{.median_ns = 57'600, .p99_ns = 130'200}, {}).found,
             "of ordinary threads as cpu: {wakeup: {median: 58us, p99: 130us}}");
-  EXPECT_EQ(JudgeWakeups({.median_ns = 57'600, .p99_ns = 130'200},
+  EXPECT_EQ(JudgeWakeups(Wakeups{.median_ns = 57'600, .p99_ns = 130'200},
                          Wakeups{.median_ns = 400, .p99_ns = 9'000})
                 .found,
             "of ordinary threads as cpu: {wakeup: {median: 58us, p99: 130us}}, of real-time ones "
