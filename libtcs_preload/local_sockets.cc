@@ -55,16 +55,15 @@ bool HasDescriptors(const msghdr& message) {
 
 }  // namespace
 
-bool IsSafeLook(const GuestThread& thread, int fd, std::int64_t now_ns) {
-  const shm::ClockPage& page = thread.slot->clock;
-  return now_ns <= page.read_safe_ns || (now_ns <= page.local_read_safe_ns && IsLocal(thread, fd));
+bool IsSafeLook(const GuestThread& thread, int fd, std::int64_t now_ns, const SafeTimes& safe) {
+  return now_ns <= safe.of_all || (now_ns <= safe.of_robot && IsLocal(thread, fd));
 }
 
 bool AreSafeLooks(const GuestThread& thread, const pollfd* fds, unsigned long count,
                   std::int64_t now_ns) {
-  const shm::ClockPage& page = thread.slot->clock;
-  if (now_ns <= page.read_safe_ns) return true;
-  if (now_ns > page.local_read_safe_ns || count > kMostLooks) return false;
+  const SafeTimes safe = SafeTimesOf(thread);
+  if (now_ns <= safe.of_all) return true;
+  if (now_ns > safe.of_robot || count > kMostLooks) return false;
   for (unsigned long i = 0; i < count; ++i) {
     if (fds[i].fd >= 0 && !IsLocal(thread, fds[i].fd)) return false;
   }

@@ -10,10 +10,21 @@
 
 namespace tcs::preload {
 
-// A look at the descriptor at `now_ns` by the thread's clock misses nothing, though others have not
-// come as far. Makes a system call.
-bool IsSafeLook(const GuestThread& thread, int fd, std::int64_t now_ns);
-// As IsSafeLook, for several descriptors; false if there are too many to look at.
+// What was sent before these times is there: from anybody, and from programs of the own robot.
+struct SafeTimes {
+  std::int64_t of_all, of_robot;
+};
+inline SafeTimes SafeTimesOf(const GuestThread& thread) {
+  const shm::ClockPage& page = thread.slot->clock;
+  return {page.read_safe_ns, page.local_read_safe_ns};
+}
+
+// A look at the descriptor at `now_ns` by the thread's clock has missed nothing, though others have
+// not come as far. `safe` is from before the look: between the look and this call the thread may
+// have been stopped, and others may have sent and come further. Makes a system call.
+bool IsSafeLook(const GuestThread& thread, int fd, std::int64_t now_ns, const SafeTimes& safe);
+// Whether looks at several descriptors that are made after this call will miss nothing; false if
+// there are too many to look at.
 bool AreSafeLooks(const GuestThread& thread, const pollfd* fds, unsigned long count,
                   std::int64_t now_ns);
 

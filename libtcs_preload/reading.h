@@ -67,11 +67,12 @@ inline int TypeOfSocket(int fd) {
 template <class Look>
 bool ReadDatagram(GuestThread& t, int fd, Reads reads, Look look, ssize_t* result) {
   const std::int64_t now = NowNs(t);
+  const SafeTimes safe = SafeTimesOf(t);
   BeginTaking(t, fd, true);
   long got = look(fd);
   if (got == -EAGAIN) {
     if (!reads.dont_wait && !IsNonBlocking(fd)) return false;
-    if (!IsSafeLook(t, fd, now)) {
+    if (!IsSafeLook(t, fd, now, safe)) {
       HoldForRead(t);
       BeginTaking(t, fd, true);
       got = look(fd);
