@@ -22,29 +22,16 @@ std::string DdsGateway::Open() {
   return {};
 }
 
-dds::Speaker DdsGateway::WhoIs(dds::Hub::Number number) const {
-  if (number == shm::kDdsCoordinator) return {"tcsim", ""};
-  for (const Process* process : joined_) {
-    if (process->dds_number == number) return {process->name, process->robot->name};
-  }
-  return {};
-}
-
-// The number of the process's robot in the scenario.
-std::size_t DdsGateway::RobotOf(dds::Hub::Number number) const {
+const Process* DdsGateway::ProcessOf(dds::Hub::Number number) const {
   const auto process = std::ranges::find_if(
       joined_, [number](const Process* one) { return one->dds_number == number; });
-  std::size_t robot = 0;
-  for (const Robot& each : run_.robots) {
-    if (process != joined_.end() && &each == (*process)->robot) break;
-    ++robot;
-  }
-  return robot;
+  return process == joined_.end() ? nullptr : *process;
 }
 
-void DdsGateway::UseNetwork(Wire& wire) {
-  paths_.emplace(wire, [this](std::uint32_t process) { return RobotOf(process); });
-  hub_.Route(&*paths_);
+dds::Speaker DdsGateway::WhoIs(dds::Hub::Number number) const {
+  if (number == shm::kDdsCoordinator) return {"tcsim", ""};
+  const Process* process = ProcessOf(number);
+  return process == nullptr ? dds::Speaker{} : dds::Speaker{process->name, process->robot->name};
 }
 
 void DdsGateway::TakeOwnMessages() {
@@ -92,12 +79,16 @@ void DdsGateway::AwaitDeliverer(Task& task, VirtualTime deadline) {
 }
 
 // A wrong message is warned of once for each client: a process may send as often as it likes.
-void DdsGateway::Send(Process& process, std::size_t bytes, const Task& by) {
+void DdsGateway::Send(Process& process, std::size_t bytes, Task& by) {
   const VirtualTime at = by.reached;
+  SampleFeed* const feed = records_.samples();
+  if (feed != nullptr) feed->BeginSending(&by);
   const std::string wrong = hub_.Send(process.dds_number, bytes, at.ns(), by.charged.ns());
+  if (feed != nullptr) feed->BeginSending(nullptr);
   if (!wrong.empty() && !std::exchange(process.client->dds_warned, true)) {
     run_.Warn(fmt::format("{} {}", process.name, wrong));
   }
+  run_.ChargePrice(by, costs_.TakeForSent());
   records_.ReadNewTopics(at.ns());
   ShowDeliverersTheirDeadlines();
 }
@@ -173,14 +164,28 @@ void DdsGateway::AwaitMessages(Task& task) {
   ReleaseThoseAwaitingDeliverer(process, {task.reached});
 }
 
-// Whether the messages that are due at `now` are being handed over, or are about to be.
+// Whether the first message that is due takes no time to receive: it is there when it is due.
+bool DdsGateway::IsFirstDueFree(const Process& process, VirtualTime now) const {
+  bool is_free = true;
+  hub_.ForEachDue(process.dds_number, now.ns(), [&](const shm::DdsMessage& header) {
+    is_free = costs_.ForReceiving(process, header) == VirtualDuration();
+    return false;
+  });
+  return is_free;
+}
+
+// Whether the messages that are due at `now` are being handed over, or are about to be. A message
+// for which the deliverer has still to work is not there yet, as natively.
 bool DdsGateway::IsDelivering(const Process& process, VirtualTime now) const {
   const Task* deliverer = process.deliverer;
   if (deliverer == nullptr) return false;
   if (deliverer->Awaits<awaited::Messages>() != nullptr) {
-    return RobotTime(hub_.DueNs(process.dds_number)) <= now;
+    return RobotTime(hub_.DueNs(process.dds_number)) <= now && IsFirstDueFree(process, now);
   }
-  return Waker::IsRunnable(*deliverer);
+  if (!Waker::IsRunnable(*deliverer)) return false;
+  if (!deliverer->messages_until.has_value()) return true;
+  if (deliverer->messages_charged.has_value()) return deliverer->debt <= VirtualDuration();
+  return IsFirstDueFree(process, std::max(now, *deliverer->messages_until));
 }
 
 void DdsGateway::ReleaseThoseAwaitingDeliverer(const Process& process, EventTime when) {
@@ -239,11 +244,29 @@ void DdsGateway::NoteWhetherStopped(const Process& process, VirtualTime at) {
   ShowDeliverersTheirDeadlines();
 }
 
+// One after the other, as from a socket: a sample is there once it has been paid, though more are
+// due already. What comes meanwhile waits for the deliverer's next turn.
+void DdsGateway::ChargeForDue(Task& task) {
+  constexpr VirtualDuration kMostAtOnce = VirtualDuration::Microseconds(50);
+  if (!task.messages_until.has_value() || task.messages_charged.has_value()) return;
+  task.messages_until = std::max(*task.messages_until, task.cpu->progress);
+  std::size_t count = 0;
+  VirtualDuration price;
+  hub_.ForEachDue(task.process->dds_number, task.messages_until->ns(),
+                  [&](const shm::DdsMessage& header) {
+                    ++count;
+                    price += costs_.ForReceiving(*task.process, header);
+                    return price < kMostAtOnce;
+                  });
+  task.messages_charged = count;
+  run_.ChargePrice(task, price);
+}
+
 void DdsGateway::HandOver(Task& task) {
   const std::optional<VirtualTime> until = std::exchange(task.messages_until, std::nullopt);
+  const std::size_t count = std::exchange(task.messages_charged, std::nullopt).value_or(0);
   if (!until.has_value()) return;
-  const std::size_t bytes =
-      hub_.Deliver(task.process->dds_number, std::max(*until, task.cpu->progress).ns());
+  const std::size_t bytes = hub_.Deliver(task.process->dds_number, until->ns(), count);
   task.reply[0] = static_cast<std::int64_t>(bytes);
 }
 

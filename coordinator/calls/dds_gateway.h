@@ -9,16 +9,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "coordinator/calls/dds_costs.h"
 #include "coordinator/calls/dds_records.h"
 #include "coordinator/calls/priority_inheritance.h"
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
-#include "coordinator/network/dds_paths.h"
 #include "coordinator/tasks/event_time.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
@@ -30,7 +29,9 @@ namespace tcs {
 class DdsGateway {
  public:
   DdsGateway(RunState& run, Waker& waker, World& world, PriorityInheritance& inheritance)
-      : run_(run), waker_(waker), world_(world), inheritance_(inheritance) {}
+      : run_(run), waker_(waker), world_(world), inheritance_(inheritance) {
+    hub_.Route(&costs_);
+  }
 
   // Once the run's header has its times, and the world is open. Empty on success, else one
   // sentence.
@@ -45,7 +46,7 @@ class DdsGateway {
   void TakeOwnMessages();
 
   // Messages between robots go over the links of `wire`, which outlives this.
-  void UseNetwork(Wire& wire);
+  void UseNetwork(Wire& wire) { costs_.UseNetwork(wire); }
 
   // Handles a thread's notification of DDS: the thread gets what it asks for in its reply, or
   // waits.
@@ -58,6 +59,9 @@ class DdsGateway {
 
   // The memory through which the process exchanges messages; -1 if it has not joined.
   int AreaOf(const Process& process) const { return hub_.AreaOf(process.dds_number); }
+  // Before the turn of a thread: a deliverer whose wait is over is charged for what it will be
+  // handed over.
+  void ChargeForDue(Task& task);
   // At the dispatch of a deliverer whose wait is over.
   void HandOver(Task& task);
   // Something may have been sent: deliverers wait until what is for them is due.
@@ -68,12 +72,13 @@ class DdsGateway {
 
  private:
   dds::Speaker WhoIs(dds::Hub::Number number) const;
-  std::size_t RobotOf(dds::Hub::Number number) const;
+  const Process* ProcessOf(dds::Hub::Number number) const;
   void Join(Task& task);
-  void Send(Process& process, std::size_t bytes, const Task& by);
+  void Send(Process& process, std::size_t bytes, Task& by);
   void WarnOfSockets(const Process& process, shm::WhySockets why);
   void AwaitMessages(Task& task);
   void AwaitDeliverer(Task& task, VirtualTime deadline);
+  bool IsFirstDueFree(const Process& process, VirtualTime now) const;
   bool IsDelivering(const Process& process, VirtualTime now) const;
   void ReleaseThoseAwaitingRoom(std::uint32_t number, EventTime when);
 
@@ -85,7 +90,7 @@ class DdsGateway {
   dds::OwnEndpoints ends_{hub_};
   DdsRecords records_{run_, hub_, ends_, [this](dds::Hub::Number number) { return WhoIs(number); }};
   std::vector<Process*> joined_;
-  std::optional<DdsPaths> paths_;
+  DdsCosts costs_{run_.IsFixed(), [this](dds::Hub::Number number) { return ProcessOf(number); }};
 };
 
 }  // namespace tcs

@@ -53,8 +53,7 @@ SampleFeed::Sample SampleFeed::SampleOf(const dds::TopicLog::Delivery& delivery)
                 .from = topic};
   if (delivery.from != 0) {
     sample.from = name_(delivery.from) + " over " + topic;
-    if (const auto sender = SenderOf(delivery))
-      sample.lineage = answers_.chains().Sends(AnswerFeed::OnChain(*sender), SentAt(delivery));
+    sample.lineage = LineageFrom(delivery);
     return sample;
   }
   for (std::size_t i = 0; i < run_.scenario.sensors.size(); ++i) {
@@ -70,8 +69,30 @@ SampleFeed::Sample SampleFeed::SampleOf(const dds::TopicLog::Delivery& delivery)
   return sample;
 }
 
+// Of a sample that a late reader gets the sender is no longer at what it was made of.
+Lineage SampleFeed::LineageFrom(const dds::TopicLog::Delivery& delivery) {
+  const auto found = on_the_way_.find(delivery.from);
+  if (found == on_the_way_.end()) return {};
+  const auto& sent = found->second;
+  const auto it = std::find_if(sent.rbegin(), sent.rend(), [&](const OnTheWay& one) {
+    return one.topic == delivery.topic && one.source_ns == delivery.source_timestamp_ns;
+  });
+  return it == sent.rend() ? Lineage{} : it->lineage;
+}
+
+void SampleFeed::Sent(const dds::TopicLog::Delivery& sample) {
+  if (sample.from == 0) return;
+  if (sample.to == 0) return Commanded(sample);
+  const auto sender = SenderOf(sample);
+  if (!sender.has_value()) return;
+  auto& sent = on_the_way_[sample.from];
+  if (sent.size() == kMostWaiting) sent.pop_front();
+  sent.push_back({sample.topic, sample.source_timestamp_ns,
+                  answers_.chains().Sends(AnswerFeed::OnChain(*sender), SentAt(sample))});
+}
+
 void SampleFeed::Delivered(const dds::TopicLog::Delivery& delivery) {
-  if (delivery.to == 0) return Commanded(delivery);
+  if (delivery.to == 0) return;
   const auto who = WhoIs(delivery.to);
   if (!who.has_value()) return;
   Receiver& receiver = receivers_[who->client];
@@ -82,21 +103,19 @@ void SampleFeed::Delivered(const dds::TopicLog::Delivery& delivery) {
   ++input.sent;
 }
 
-// The thread that has sent the sample has the turn, or was the last thread of its client that took
-// something.
-std::optional<AnswerBook::Who> SampleFeed::SenderOf(const dds::TopicLog::Delivery& delivery) {
-  std::optional<AnswerBook::Who> who = WhoIs(delivery.from);
-  if (!who.has_value()) return who;
+std::optional<AnswerBook::Who> SampleFeed::SenderOf(const dds::TopicLog::Delivery& sample) {
+  const std::optional<AnswerBook::Who> client = WhoIs(sample.from);
+  if (!client.has_value()) return client;
   // The gateway's commands, which count as its second client, are made of what came by sockets.
-  if (answers_.IsOurs(who->client)) return AnswerBook::Who{.client = who->client + 1};
-  const Task* runs = run_.turn.lasts() ? run_.turn.task() : nullptr;
-  if (runs != nullptr && runs->process->dds_number == delivery.from) {
-    if (const auto sender = answers_.WhoIs(*runs)) who = sender;
-  } else if (const auto found = receivers_.find(who->client);
-             found != receivers_.end() && found->second.last.has_value()) {
-    who = found->second.last;
+  if (answers_.IsOurs(client->client)) return AnswerBook::Who{.client = client->client + 1};
+  const auto sender = sender_ == nullptr ? std::nullopt : answers_.WhoIs(*sender_);
+  if (sender.has_value() && answers_.book().LastSampledOf(sender->thread) >= 0) return sender;
+  // What a thread sends that takes no samples of sensors is made of what another one took.
+  if (const auto found = receivers_.find(client->client);
+      found != receivers_.end() && found->second.last.has_value()) {
+    return found->second.last;
   }
-  return who;
+  return sender.has_value() ? sender : client;
 }
 
 void SampleFeed::Commanded(const dds::TopicLog::Delivery& delivery) {

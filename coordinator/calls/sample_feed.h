@@ -31,6 +31,9 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
   // `name` says which client a process is of. `run`, `answers` and `topics` outlive this.
   SampleFeed(RunState& run, AnswerFeed& answers, const dds::TopicLog& topics, NameOf name);
 
+  // The thread that has written the samples that the hub is about to be told of; null: nobody.
+  void BeginSending(const Task* by) { sender_ = by; }
+  void Sent(const dds::TopicLog::Delivery& sample) override;
   void Delivered(const dds::TopicLog::Delivery& delivery) override;
   // The thread has taken samples, as it has noted, at that time.
   void Taken(const Task& task, const shm::DatagramNotes::Note& note, VirtualTime at);
@@ -48,6 +51,12 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
     std::string from;  // InputFigures::from
     Lineage lineage{};
   };
+  // A sample on its way: what it is made of was known when it was sent.
+  struct OnTheWay {
+    Topic topic;
+    std::int64_t source_ns;
+    Lineage lineage;
+  };
   struct Receiver {
     std::deque<Sample> waiting;
     std::map<std::string, InputFigures> inputs;
@@ -58,6 +67,7 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
   std::optional<AnswerBook::Who> SenderOf(const dds::TopicLog::Delivery& delivery);
   void Commanded(const dds::TopicLog::Delivery& delivery);
   Sample SampleOf(const dds::TopicLog::Delivery& delivery);
+  Lineage LineageFrom(const dds::TopicLog::Delivery& delivery);
   std::int64_t SentAt(const dds::TopicLog::Delivery& delivery) const;
   std::optional<Topic> TopicOf(std::pair<std::uint32_t, std::int32_t> reader,
                                const Receiver& receiver, std::int64_t newest_ns);
@@ -68,6 +78,8 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
   NameOf name_;
   const std::map<std::string, int> commanded_;  // topics, and which command
   std::map<dds::Hub::Number, std::optional<AnswerBook::Who>> clients_;
+  const Task* sender_ = nullptr;
+  std::map<dds::Hub::Number, std::deque<OnTheWay>> on_the_way_;      // by sender, the last ones
   std::map<int, Receiver> receivers_;                                // by client
   std::map<std::pair<std::uint32_t, std::int32_t>, Topic> readers_;  // by process and entity
 };

@@ -14,6 +14,7 @@
 #include "coordinator/os/say.h"
 #include "coordinator/scenario/executable.h"
 #include "coordinator/scenario/load_outside.h"
+#include "coordinator/scenario/load_prices.h"
 
 namespace tcs {
 
@@ -109,6 +110,16 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
   if (const std::string error = TakeWakeup(arguments.wakeup, &wakeup); !error.empty()) {
     return Fail(error);
   }
+  std::optional<LoadResult<PriceList>> prices;
+  if (arguments.costs == "none") {
+    prices = NoPrices();
+  } else if (!arguments.costs.empty()) {
+    prices = LoadPriceFile(arguments.costs);
+  }
+  if (prices.has_value()) {
+    if (const auto* error = std::get_if<LoadError>(&*prices))
+      return Fail("--costs: " + error->message);
+  }
   if (const std::string error =
           TakeDuration("outside-takes", arguments.outside_takes, &outside_takes);
       !error.empty()) {
@@ -147,6 +158,10 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
   computer.cores = arguments.cores;
   computer.speed = arguments.speed;
   computer.wakeup = wakeup;
+  if (prices.has_value()) {
+    computer.prices = std::get<PriceList>(*prices);
+    computer.prices_are_hosts = false;
+  }
   computer.clients = {client};
   options.on_notice = [](const std::string& notice) { Say(notice); };
   WarningsAsTheyCome warnings;

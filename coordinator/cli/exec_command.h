@@ -13,6 +13,7 @@ struct ExecArguments {
   double speed = 1.0;  // of each core
   int cores = 1;
   std::string wakeup;  // how long waking a thread takes, such as 50us or 20us,80us; empty: nothing
+  std::string costs;   // a file of prices, or none; empty: those that tcs has
   bool patch_vdso = true;
   CycleCounter cycle_counter = CycleCounter::kVirtual;
   std::string call_cost;  // of one call under fixed accounting, such as 100ns; empty: as by default

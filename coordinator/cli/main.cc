@@ -223,6 +223,10 @@ int main(int argc, char** argv) {
   exec->add_option("--wakeup", wakeup,
                    "TIME: how long waking a thread takes that has waited, or MEDIAN,P99, such as "
                    "20us,80us (default: 0)");
+  std::string costs;
+  exec->add_option("--costs", costs,
+                   "FILE: what a computer takes for DDS samples beyond what the program computes "
+                   "for them, or none (default: what tcs has measured)");
   bool patch_vdso = true;
   exec->add_flag("--patch-vdso,!--no-patch-vdso", patch_vdso,
                  "leave the vDSO as it is: programs that read the kernel's clocks past the C "
@@ -442,7 +446,7 @@ int main(int argc, char** argv) {
     });
   }
   return tcs::RunGuarded([&] {
-    return exec->parsed() ? tcs::ExecCommand({command, speed, cores, wakeup, patch_vdso,
+    return exec->parsed() ? tcs::ExecCommand({command, speed, cores, wakeup, costs, patch_vdso,
                                               cycle_counter == "host" ? tcs::CycleCounter::kHost
                                                                       : tcs::CycleCounter::kVirtual,
                                               call_cost, allocation_cost,

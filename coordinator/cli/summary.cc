@@ -186,6 +186,8 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
       json["robots"][robot.name]["wakeup"] = {{"median_ns", robot.wakeup.median.ns()},
                                               {"p99_ns", robot.wakeup.p99.ns()}};
     }
+    json["robots"][robot.name]["costs"] = {{"list", robot.is_ideal ? "none" : robot.prices.name},
+                                           {"hash", fmt::format("{:016x}", robot.prices.Hash())}};
     json["robots"][robot.name]["scheduler"] =
         robot.scheduler == SchedulerPolicy::kFixedPriority ? "fixed_priority" : "edf";
     if (answers) json["robots"][robot.name]["use"] = UseOfCores(robot, r);
@@ -199,6 +201,7 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
   for (const ClientReport& c : r.clients) {
     json["clients"][c.name].update({
         {"charged_ns", c.usage.charged_ns},
+        {"priced_ns", c.usage.priced_ns},
         {"host_cpu_ns", c.usage.host_cpu_ns},
         {"stolen_ns", c.usage.stolen_ns},
         {"activations", c.usage.activations},

@@ -350,8 +350,10 @@ void Hub::Enter(const DdsMessage& header, Bytes bytes) {
 
 void Hub::Pass(Number to, const DdsMessage& header, const Message& message) {
   std::int64_t due_ns = header.time_ns;
-  const bool has_way = header.from != shm::kDdsCoordinator && to != shm::kDdsCoordinator;
-  if (paths_ != nullptr && has_way && Find(to) != nullptr) due_ns = paths_->ArrivalNs(header, to);
+  const bool is_heard = to == shm::kDdsCoordinator || Find(to) != nullptr;
+  if (paths_ != nullptr && header.from != shm::kDdsCoordinator && is_heard) {
+    due_ns = paths_->ArrivalNs(header, to);
+  }
   if (due_ns != shm::kNeverNs) {
     Queue(to, due_ns, message);
   } else if (observer_ != nullptr && header.kind == DdsKind::kSample) {
@@ -470,15 +472,19 @@ Hub::Backlog Hub::BacklogOf(Number number) const {
   return {member->queue.size(), member->queued_bytes, DueNs(number)};
 }
 
-std::size_t Hub::Deliver(Number number, std::int64_t now_ns) {
+bool Hub::Fits(const Bytes& message, std::size_t filled) {
+  if (filled + message.size() <= shm::kDdsUsualSize) return true;
+  return filled == 0 && message.size() <= shm::kDdsBoxSize;
+}
+
+std::size_t Hub::Deliver(Number number, std::int64_t now_ns, std::size_t most) {
   Member* member = Find(number);
   if (member == nullptr) return 0;
   std::size_t filled = 0;
   member->replaceable.clear();  // its entries refer to the queue's begin
-  while (!member->queue.empty() && member->queue.begin()->first <= now_ns) {
+  for (; most > 0 && !member->queue.empty() && member->queue.begin()->first <= now_ns; --most) {
     const Bytes& message = *member->queue.begin()->second;
-    const bool fits = filled + message.size() <= shm::kDdsUsualSize;
-    if (!fits && (filled > 0 || message.size() > shm::kDdsBoxSize)) break;
+    if (!Fits(message, filled)) break;
     memcpy(member->inbox() + filled, message.data(), message.size());
     TellDelivered(message, number, now_ns);
     filled += message.size();

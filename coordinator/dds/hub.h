@@ -81,9 +81,22 @@ class Hub {
 
   // When the process's next message is due.
   std::int64_t DueNs(Number number) const;
-  // Puts the messages that are due into the process's inbox, as far as there is room; returns the
-  // bytes. From then on the process is delivering, until it has come back for more.
-  std::size_t Deliver(Number number, std::int64_t now_ns);
+  // Puts the messages that are due, at most so many, into the process's inbox, as far as there is
+  // room; returns the bytes. From then on the process is delivering, until it has come back for
+  // more.
+  std::size_t Deliver(Number number, std::int64_t now_ns, std::size_t most = SIZE_MAX);
+  // Calls `visit(header)` for the messages that Deliver would put there, until that says false.
+  template <class Visit>
+  void ForEachDue(Number number, std::int64_t now_ns, Visit visit) const {
+    const Member* member = Find(number);
+    if (member == nullptr) return;
+    std::size_t filled = 0;
+    for (const auto& [due_ns, message] : member->queue) {
+      if (due_ns > now_ns || !Fits(*message, filled)) return;
+      filled += message->size();
+      if (!visit(HeaderOf(*message))) return;
+    }
+  }
   void CameBack(Number number);
   bool IsDelivering(Number number) const;
   // More messages wait for the process, or are in its hands, than it can take at once
@@ -167,6 +180,8 @@ class Hub {
   std::vector<Known>::const_iterator KnownAs(Number from, const Guid& subject) const;
   bool IsAnothers(const Guid& guid, Number number) const;
   void Forget(Number from, const Guid& subject);
+  // Whether a box with so many bytes in it has room for the message.
+  static bool Fits(const Bytes& message, std::size_t filled);
   void TellDelivered(const Bytes& message, Number to, std::int64_t at_ns);
   Member* Find(Number number);
   const Member* Find(Number number) const;

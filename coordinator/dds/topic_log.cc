@@ -19,6 +19,9 @@ void TopicLog::Entered(const DdsMessage& header, std::span<const std::byte> payl
   if (header.kind == DdsKind::kEndpoint && is_gone) known_.erase(GuidAt(header.subject));
   if (header.kind == DdsKind::kEndpoint && !is_gone) NoteEndpoint(header, payload);
   if (header.kind == DdsKind::kSample) NoteSample(header, payload);
+  const auto sent = DeliveryOf(header, header.to, 0);
+  if (!sent.has_value()) return;
+  for (DeliveryListener* listener : deliveries_) listener->Sent(*sent);
 }
 
 // The topic that the endpoint is counted with; none: there is no room for the endpoint.
@@ -102,20 +105,26 @@ void TopicLog::NoteSample(const DdsMessage& header, std::span<const std::byte> p
 }
 
 // The topic of a writer that is gone is not known any more.
-void TopicLog::Delivered(const DdsMessage& header, std::uint32_t to, std::int64_t at_ns) {
+std::optional<TopicLog::Delivery> TopicLog::DeliveryOf(const DdsMessage& header, std::uint32_t to,
+                                                       std::int64_t at_ns) const {
   if (deliveries_.empty() || header.kind != DdsKind::kSample ||
       header.sample_kind != shm::kDdsData) {
-    return;
+    return std::nullopt;
   }
   const auto found = known_.find(GuidAt(header.subject));
-  if (found == known_.end()) return;
-  const Delivery delivery{.topic = found->second.topic,
-                          .from = header.from,
-                          .to = to,
-                          .sent_ns = header.time_ns,
-                          .source_timestamp_ns = header.source_timestamp_ns,
-                          .received_ns = at_ns};
-  for (DeliveryListener* listener : deliveries_) listener->Delivered(delivery);
+  if (found == known_.end()) return std::nullopt;
+  return Delivery{.topic = found->second.topic,
+                  .from = header.from,
+                  .to = to,
+                  .sent_ns = header.time_ns,
+                  .source_timestamp_ns = header.source_timestamp_ns,
+                  .received_ns = at_ns};
+}
+
+void TopicLog::Delivered(const DdsMessage& header, std::uint32_t to, std::int64_t at_ns) {
+  const auto delivery = DeliveryOf(header, to, at_ns);
+  if (!delivery.has_value()) return;
+  for (DeliveryListener* listener : deliveries_) listener->Delivered(*delivery);
 }
 
 void TopicLog::Dropped(const DdsMessage& header, std::uint32_t) {

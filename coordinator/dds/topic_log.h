@@ -48,6 +48,8 @@ class TopicLog : public HubObserver {
   };
   struct DeliveryListener {
     virtual ~DeliveryListener() = default;
+    // A sample has been sent, and is delivered later, if at all; `received_ns` is 0.
+    virtual void Sent(const Delivery&) {}
     virtual void Delivered(const Delivery& delivery) = 0;
   };
 
@@ -82,6 +84,9 @@ class TopicLog : public HubObserver {
   void ForgetAllOf(const Guid& participant);
   void NoteEndpoint(const shm::DdsMessage& header, std::span<const std::byte> payload);
   void NoteSample(const shm::DdsMessage& header, std::span<const std::byte> payload);
+  // None: no sample with data, or of a writer that is not known.
+  std::optional<Delivery> DeliveryOf(const shm::DdsMessage& header, std::uint32_t to,
+                                     std::int64_t at_ns) const;
 
   std::function<Speaker(Hub::Number)> who_;
   Listener* listener_ = nullptr;

@@ -7,6 +7,7 @@
 
 #include "coordinator/engine/turn_plan.h"
 #include "coordinator/engine/wiring.h"
+#include "coordinator/port/clocks.h"
 #include "coordinator/scenario/patience.h"
 #include "coordinator/text/spoken.h"
 #include "shm/check.h"
@@ -53,8 +54,13 @@ void Loop::PayDebt(Task& task, VirtualDuration passes) {
     task.lead = clock.lead();
     return;
   }
-  task.cpu->ComeTo(task.cpu->progress + std::max(VirtualDuration(), passes));
+  const VirtualTime start = task.cpu->progress;
+  task.cpu->ComeTo(start + std::max(VirtualDuration(), passes));
   task.ComeTo(task.cpu->progress);
+  const ProgramClock& clock = task.process->clock;
+  run_.turn.recorded_tsc = HostTsc();  // the paid debt takes no real time
+  all_.records.Ran(task, {clock.At(start), clock.At(task.reached)}, {start, task.reached},
+                   run_.turn.recorded_tsc);
 }
 
 void Loop::StepCpu(VirtualCpu& cpu) {
@@ -83,6 +89,7 @@ void Loop::StepCpu(VirtualCpu& cpu) {
   }
   if (!task.parked && !task.owes_ahead && !task.turns_beside)
     all_.gate_keeper.ChargeUndispatched(task);
+  all_.dds.ChargeForDue(task);
   VirtualTime idle_until;
   const VirtualTime start = cpu.progress;
   const VirtualDuration lead = clock.lead();

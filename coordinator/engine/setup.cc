@@ -215,6 +215,12 @@ std::optional<std::uint64_t> Setup::TurnsSeed() const {
   return run_.scenario.seed * 0x9e3779b97f4a7c15 + run_.robots.size();
 }
 
+// Under callback the world stands still while programs compute, whatever that takes.
+PriceList Setup::PricesOf(const RobotSpec& spec) const {
+  if (spec.is_ideal || run_.IsCallback()) return NoPrices();
+  return spec.prices_are_hosts ? spec.prices.On(spec.speed) : spec.prices;
+}
+
 void Setup::MakeRobots() {
   for (const RobotSpec& spec : run_.scenario.robots) {
     const auto cores = static_cast<std::uint32_t>(spec.cores);
@@ -230,6 +236,7 @@ void Setup::MakeRobots() {
     if (spec.wakeup.median > VirtualDuration() && !run_.IsCallback()) {
       robot.wakeup = WakeupLatency(spec.wakeup.median, spec.wakeup.p99, run_.scenario.seed);
     }
+    robot.prices = PricesOf(spec);
     for (std::uint32_t core = 0; core < cores; ++core) {
       VirtualCpu& cpu = run_.cpus.emplace_back();
       cpu.robot = &robot;

@@ -22,6 +22,7 @@ class Setup : public EnginePart {
   // The part of Prepare() that takes nothing of the machine's: the run's memory, and the parts that
   // hear of its events. Returns the same.
   [[nodiscard]] std::string PrepareParts(const std::vector<int>& further_cpus);
+  PriceList PricesOf(const RobotSpec& spec) const;
   void MakeRobots();
 
  private:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -68,8 +69,8 @@ LoadResult<MeasuredRun> FromSummary(const std::string& folder) {
       if (!entry.contains("calls") || !entry.contains("allocations")) return NotCounted(folder);
       if (!IsClient(name)) return LoadError{path + " is damaged; make the run again"};
       MeasuredClient& client = run.clients[name];
-      client.whole = {CountIn(entry, "charged_ns"), CountIn(entry, "calls"),
-                      CountIn(entry, "allocations")};
+      client.whole = {std::max(0.0, CountIn(entry, "charged_ns") - CountIn(entry, "priced_ns")),
+                      CountIn(entry, "calls"), CountIn(entry, "allocations")};
       client.speed = json.at("robots").at(entry.at("robot").get<std::string>()).at("speed");
     }
   } catch (const Json::exception&) {
@@ -88,12 +89,13 @@ LoadResult<MeasuredRun> ReadMeasuredRun(const std::string& folder) {
   const auto take = [run](const CsvFields& fields) {
     const auto client = run->clients.find(std::string(fields[0]));
     const auto charged = ToCount(fields[1]), calls = ToCount(fields[2]),
-               allocations = ToCount(fields[3]);
-    if (client == run->clients.end() || !charged || !calls || !allocations) return false;
-    client->second.activations.push_back({*charged, *calls, *allocations});
+               allocations = ToCount(fields[3]), priced = ToCount(fields[4]);
+    if (client == run->clients.end() || !charged || !calls || !allocations || !priced) return false;
+    client->second.activations.push_back({std::max(0.0, *charged - *priced), *calls, *allocations});
     return true;
   };
-  const auto read = ReadCsv(path, {"client", "charged_ns", "calls", "allocations"}, take);
+  const auto read =
+      ReadCsv(path, {"client", "charged_ns", "calls", "allocations", "priced_ns"}, take);
   if (const auto* error = std::get_if<LoadError>(&read)) return *error;
   if (const auto unusable = std::get<std::int64_t>(read); unusable > 0) {
     run->warnings.push_back(fmt::format("{} has {} that cannot be used; left out", path,

@@ -7,12 +7,17 @@ namespace tcs {
 
 namespace {
 
+// What is charged without being computed has moved the origin.
+std::int64_t OriginOf(const Task& task) {
+  return task.metered.host_origin_ns + task.metered.OnHost(task.priced).ns();
+}
+
 // The time that the thread has used, by its own CPU clock, since it was first charged; 0 where the
 // clock can no longer be asked.
 std::int64_t HostCpuOf(Task& task) {
   if (!task.metered.has_origin()) return 0;
   const std::int64_t now = HostClockOf(task);
-  return now < 0 ? 0 : now - task.metered.host_origin_ns;
+  return now < 0 ? 0 : now - OriginOf(task);
 }
 
 }  // namespace
@@ -39,6 +44,7 @@ Usage UsageBook::UsageOf(const Process& process) const {
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
     usage += {.charged_ns = task->charged.ns(),
+              .priced_ns = task->priced.ns(),
               .host_cpu_ns = HostCpuOf(*task),
               .stolen_ns = check_.StolenOf(*task),
               .activations = task->activations,
@@ -61,6 +67,7 @@ void UsageBook::Keep(Task& ended) const {
   Process& process = *ended.process;
   const Usage usage{
       .charged_ns = ended.charged.ns(),
+      .priced_ns = ended.priced.ns(),
       .stolen_ns = ended.slot < 0 ? 0 : check_.StolenOf(ended),
       .activations = ended.activations,
       .work = ended.work,
@@ -69,8 +76,8 @@ void UsageBook::Keep(Task& ended) const {
     process.ended.Add(usage, 0, 0, 0);
     return;
   }
-  const std::int64_t fallback_ns = ended.metered.OnHost(ended.charged).ns();
-  process.ended.Add(usage, HostClockOf(ended), ended.metered.host_origin_ns, fallback_ns);
+  const std::int64_t fallback_ns = ended.metered.OnHost(ended.charged - ended.priced).ns();
+  process.ended.Add(usage, HostClockOf(ended), OriginOf(ended), fallback_ns);
 }
 
 void UsageBook::Keep(Process& ended) {

@@ -86,6 +86,7 @@ std::optional<Section> ClientsSection(const Results& results) {
   Table table("Means over the trials.", {{"client", false},
                                          {"system", false},
                                          {"charged"},
+                                         {"by price"},
                                          {"its CPU clock"},
                                          {"stolen"},
                                          {"activations"},
@@ -99,8 +100,10 @@ std::optional<Section> ClientsSection(const Results& results) {
       const double charged = mean(&Client::charged_ns) * 1e-9;
       const double own = mean(&Client::own_clock_ns) * 1e-9;
       const double stolen = mean(&Client::stolen_ns) * 1e-9;
-      table.Row({name, system.name, Seconds(charged), own < 0 ? "–" : Seconds(own), Seconds(stolen),
-                 Plain(mean(&Client::activations)), Plain(mean(&Client::overruns))});
+      const double priced = mean(&Client::priced_ns) * 1e-9;
+      table.Row({name, system.name, Seconds(charged), Seconds(priced), own < 0 ? "–" : Seconds(own),
+                 Seconds(stolen), Plain(mean(&Client::activations)),
+                 Plain(mean(&Client::overruns))});
       const double share = charged > 0 ? stolen / charged : 0;
       most = std::max(most, {share, name + InSystem(results, system)});
     }
@@ -110,12 +113,12 @@ std::optional<Section> ClientsSection(const Results& results) {
     sentence = fmt::format("The most was stolen from {}: {} of what it was charged.", most.second,
                            Percent(most.first));
   }
-  return Section{
-      "What clients were charged",
-      sentence +
-          " Charged is what moved a program's clock; stolen went to others while it ran, "
-          "and moved nothing.",
-      table.Html(), table.Text()};
+  return Section{"What clients were charged",
+                 sentence +
+                     " Charged is what moved a program's clock; what it is charged by price it did "
+                     "not compute "
+                     "here; stolen went to others while it ran, and moved nothing.",
+                 table.Html(), table.Text()};
 }
 
 }  // namespace tcs::report

@@ -104,6 +104,7 @@ LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
       client.robot = entry.value("robot", "");
       client.is_periodic = entry.value("class", "") == "periodic";
       entry.at("charged_ns").get_to(client.charged_ns);
+      client.priced_ns = entry.value("priced_ns", std::int64_t{0});  // runs of earlier versions
       entry.at("host_cpu_ns").get_to(client.own_clock_ns);
       entry.at("stolen_ns").get_to(client.stolen_ns);
       entry.at("activations").get_to(client.activations);

@@ -42,7 +42,7 @@ struct ActivationTimes {
 struct Client {
   std::string robot;
   bool is_periodic = false;
-  std::int64_t charged_ns = 0, own_clock_ns = 0, stolen_ns = 0;
+  std::int64_t charged_ns = 0, priced_ns = 0, own_clock_ns = 0, stolen_ns = 0;
   std::int64_t activations = 0, overruns = 0;
   std::optional<ClientDeadline> deadline;
   Quantiles response, data_age;

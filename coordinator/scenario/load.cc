@@ -1,16 +1,13 @@
 #include "coordinator/scenario/load.h"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <iterator>
-#include <memory>
 #include <system_error>
 #include <utility>
 
 #include "coordinator/scenario/load_dds.h"
 #include "coordinator/scenario/overlay.h"
+#include "coordinator/scenario/read_text.h"
 #include "coordinator/scenario/sections.h"
 #include "coordinator/scenario/yaml_reader.h"
 
@@ -19,26 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLargestFile = 1 << 20;
-
-std::string ReadScenarioFile(const std::string& path, const char* of_what) {
-  const auto fail = [&](const std::string& why) {
-    throw ScenarioMistake{path + ": " + why + "; give the path of " + of_what};
-  };
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "re"));
-  if (!file) fail(std::string("cannot be read: ") + std::strerror(errno));
-  std::string text(kLargestFile + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-  if (std::ferror(file.get())) fail(std::string("cannot be read: ") + std::strerror(errno));
-  if (text.size() > kLargestFile) fail("is larger than 1 MiB");
-  return text;
-}
-
 std::vector<Setting> ReadOverlay(const std::string& path) {
-  return SettingsOfOverlay(path, ReadScenarioFile(path, "a piece of a scenario"));
+  return SettingsOfOverlay(path, ReadText(path, "a piece of a scenario"));
 }
 
 void Append(std::vector<Setting> more, std::vector<Setting>* settings) {
@@ -92,7 +71,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   }
   Append(SettingsOfOptions(overrides.set), &settings);
   const YamlMap top =
-      ParseYaml(path, ReadScenarioFile(path, "a scenario file"), settings, mistakes).AsMap();
+      ParseYaml(path, ReadText(path, "a scenario file"), settings, mistakes).AsMap();
   top.AllowOnly({"name", "duration", "drift", "patience", "seed", "csv_period", "csv_contacts",
                  "dynamics", "bodies", "models", "robots", "network", "channels", "chains", "clock",
                  "ros", "metrics", "expect"});

@@ -1,4 +1,5 @@
 // `robots` of a scenario file: virtual computers and the clients on them.
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <variant>
@@ -8,6 +9,7 @@
 #include "coordinator/scenario/executable.h"
 #include "coordinator/scenario/load_lives.h"
 #include "coordinator/scenario/load_outside.h"
+#include "coordinator/scenario/load_prices.h"
 #include "coordinator/scenario/sections.h"
 #include "coordinator/scenario/substitute.h"
 
@@ -36,14 +38,29 @@ WakeupSpec LoadWakeup(const YamlValue& value) {
   return wakeup;
 }
 
-void LoadCpu(const YamlValue& value, RobotSpec* robot) {
+// `none`, or a file.
+void LoadCosts(const YamlValue& value, const Variables& variables, RobotSpec* robot) {
+  const std::string text = Substitute(value, variables);
+  if (text.empty()) value.Fail("is empty; give the path of a list of prices, or write none");
+  robot->prices_are_hosts = false;
+  robot->prices = NoPrices();
+  if (text == "none") return;
+  const auto path = std::filesystem::path(variables.scenario_directory) / text;
+  LoadResult<PriceList> list = LoadPriceFile(path.lexically_normal());
+  if (const auto* error = std::get_if<LoadError>(&list)) {
+    value.FailPlainly(value.name() + ": " + error->message);
+  }
+  robot->prices = std::get<PriceList>(std::move(list));
+}
+
+void LoadCpu(const YamlValue& value, const Variables& variables, RobotSpec* robot) {
   if (!value.IsMap()) {
     robot->is_ideal = value.AsText() == "ideal";
     if (robot->is_ideal) return;
     value.Fail("is '" + value.AsText() + "'; write ideal, or a map like {cores: 1, speed: 1.0}");
   }
   const YamlMap map = value.AsMap();
-  map.AllowOnly({"cores", "speed", "outside_speed", "wakeup"});
+  map.AllowOnly({"cores", "speed", "outside_speed", "wakeup", "costs"});
   if (const YamlValue* cores = map.Find("cores")) {
     robot->cores = static_cast<int>(cores->AsInteger(1, kMostCores));
   }
@@ -61,6 +78,8 @@ void LoadCpu(const YamlValue& value, RobotSpec* robot) {
   }
   if (const YamlValue* wakeup = map.Find("wakeup"))
     wakeup->Try([&] { robot->wakeup = LoadWakeup(*wakeup); });
+  if (const YamlValue* costs = map.Find("costs"))
+    costs->Try([&] { LoadCosts(*costs, variables, robot); });
 }
 
 ClientClass LoadClass(const YamlValue& value) {
@@ -181,7 +200,7 @@ RobotSpec LoadRobot(const YamlMap::Entry& entry, const Variables& variables,
   map.AllowOnly({"cpu", "scheduler", "address", "clients"});
   RobotSpec robot;
   robot.name = entry.key;
-  if (const YamlValue* cpu = map.Find("cpu")) LoadCpu(*cpu, &robot);
+  if (const YamlValue* cpu = map.Find("cpu")) LoadCpu(*cpu, variables, &robot);
   if (const YamlValue* v = map.Find("scheduler")) robot.scheduler = LoadScheduler(*v);
   const YamlValue& clients =
       map.Require("clients", "clients: {controller: {command: [./controller]}}");

@@ -17,6 +17,7 @@
 
 #include "coordinator/dds/qos.h"
 #include "coordinator/dds/ros_names.h"
+#include "coordinator/prices/price_list.h"
 #include "coordinator/scenario/expectation_spec.h"
 #include "coordinator/scenario/instruments.h"
 #include "coordinator/scenario/metric_spec.h"
@@ -116,6 +117,8 @@ struct RobotSpec {
   int cores = 1;
   double speed = 1.0;  // of one core, relative to the host's
   WakeupSpec wakeup;
+  PriceList prices = ShippedPrices();  // of work of which tcs spares its programs
+  bool prices_are_hosts = true;        // of a computer like the host, rather than the robot's own
   std::vector<ClientSpec> clients;
   SchedulerPolicy scheduler = SchedulerPolicy::kFixedPriority;
   bool is_ideal = false;       // computing takes its programs no time

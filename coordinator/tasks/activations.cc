@@ -55,6 +55,7 @@ void Activations::Released(Task& task, shm::WakeReason reason, VirtualTime at,
   activation.start_ns = -1;
   activation.wakeup_ns = wakeup.ns();
   activation.charged_ns = std::max(activation.charged_ns, task.charged.ns());
+  activation.priced_ns = task.priced.ns();
   if (task.slot >= 0) shm::NoteWoken(task.slot_memory->receipts);
   TellOfBeginning(task, activation.release_ns + activation.wakeup_ns);
 }
@@ -106,8 +107,8 @@ void Activations::IsCutOff(const Task& task, VirtualTime end) const {
 void Activations::Write(const Task& task, const Activation& activation, std::int64_t end_ns,
                         std::int64_t charged_ns, const shm::WorkCounts& work) {
   if (task.process->robot->is_ours) return;
-  log_.Write(task.process->name, task.is_further ? task.order : 0, activation, end_ns, charged_ns,
-             work);
+  log_.Write(task.process->name, task.is_further ? task.order : 0, activation, end_ns,
+             {.charged_ns = charged_ns, .priced_ns = task.priced.ns(), .work = work});
 }
 
 // The thread did not wait, and is at its next activation all the same (shm/receipts.h).
@@ -128,6 +129,7 @@ void Activations::Next(Task& task, ProgramTime now, VirtualDuration charged,
                 .release_ns = now_ns,
                 .start_ns = now_ns,
                 .charged_ns = charged_ns,
+                .priced_ns = task.priced.ns(),
                 .work = work};
   if (receipt.release_ns.has_value()) {
     activation.release_ns = *receipt.release_ns;
@@ -182,6 +184,7 @@ void Activations::Idles(Task& task, bool dies) {
     dies ? answers_->Dies(task) : answers_->book().Idles(task.order);
   }
   task.activation.charged_ns = charged;
+  task.activation.priced_ns = task.priced.ns();
   task.activation.work = task.work;
 }
 

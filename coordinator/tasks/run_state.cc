@@ -29,6 +29,15 @@ HostDuration RunState::ChargeAsDebt(Task& task, VirtualDuration computed) {
   return host;
 }
 
+// The thread's CPU clock does not have what is charged here: the charge's origin on it moves.
+void RunState::ChargePrice(Task& task, VirtualDuration price) {
+  task.charged += price;
+  task.priced += price;
+  task.debt += price;
+  if (task.cpu != nullptr) task.cpu->busy += price;
+  if (task.metered.has_origin()) task.metered.host_origin_ns -= task.metered.OnHost(price).ns();
+}
+
 VirtualTime RunState::WrittenAt() const {
   const Task& task = *turn.task();
   if (task.slot < 0) return task.cpu->progress;

@@ -71,6 +71,8 @@ struct RunState {
   // The thread is charged at once for the time that it has computed outside of a turn, and passes
   // that time in its turns. Returns the time as the host's.
   HostDuration ChargeAsDebt(Task& task, VirtualDuration computed);
+  // The same, for what a thread has not computed, but would natively have. The thread is stopped.
+  void ChargePrice(Task& task, VirtualDuration price);
 
   // The furthest that two leaves, or a program's clock and the world, have been apart.
   VirtualDuration Drift() const { return std::max(root.drift(), most_lead); }

@@ -22,6 +22,7 @@
 #include "coordinator/port/proc_files.h"
 #include "coordinator/port/traps.h"
 #include "coordinator/port/unique_fd.h"
+#include "coordinator/prices/price_list.h"
 #include "coordinator/queues/process_timers.h"
 #include "coordinator/tasks/ended_children.h"
 #include "coordinator/tasks/kept_files.h"
@@ -93,7 +94,9 @@ struct Task : HostThread {
   std::optional<KeptFiles> kept;     // of its call, from a wait on that is over
   bool passes_on = false;            // other threads were passed over for it (one_waiter.cc)
   bool is_deliverer = false;         // of DDS messages, to its process
-  std::optional<VirtualTime> messages_until;  // messages due by then are for its next dispatch
+  std::optional<VirtualTime> messages_until;  // messages due by then are for its next dispatch,
+  std::optional<std::size_t>
+      messages_charged;  // so many of them: it is charged for receiving these
   int trap_listener = -1;
   std::uint64_t trap_id = 0;       // the thread stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;    // the call is to return this,
@@ -122,6 +125,7 @@ struct Task : HostThread {
   VirtualDuration debt;  // executed beyond a horizon, charged first at the next dispatch
   int used_up = 0;       // dispatches in a row that ended at their horizon: the thread is computing
   VirtualDuration charged;
+  VirtualDuration priced;              // of that: not computed (RunState::ChargePrice)
   std::int64_t settled_adjust_ns = 0;  // of its clock page, as the last turn ended
   bool is_cut_off = false;             // the thread has been told that its connection is gone
   UniqueFd cpu_clock_fd;               // where its CPU clock is read, if it is not its process's
@@ -272,6 +276,7 @@ struct Robot {
   double speed;
   double outside_speed = 1.0;  // virtual seconds for each real one that is waited outside
   WakeupLatency wakeup;
+  PriceList prices;
   std::uint32_t number = 0;  // in the scenario's order, from 1 on
   bool is_ideal = false;     // the robot's threads are charged nothing
   bool is_ours = false;      // tcsim's own: no run goes on for its programs

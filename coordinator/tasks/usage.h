@@ -16,6 +16,7 @@ struct OutsideUsage {
 
 struct Usage {
   std::int64_t charged_ns = 0;   // virtual
+  std::int64_t priced_ns = 0;    // of that: work of which tcs spares programs (price_list.h)
   std::int64_t host_cpu_ns = 0;  // by the kernel's CPU clocks
   std::int64_t stolen_ns = 0;
   std::int64_t activations = 0, overruns = 0;
@@ -23,6 +24,7 @@ struct Usage {
 
   Usage& operator+=(const Usage& more) {
     charged_ns += more.charged_ns;
+    priced_ns += more.priced_ns;
     host_cpu_ns += more.host_cpu_ns;
     stolen_ns += more.stolen_ns;
     activations += more.activations;

@@ -23,17 +23,23 @@ struct Activation {
   std::int64_t release_ns = 0;  // the thread became ready
   std::int64_t wakeup_ns = 0;   // and could run so much later
   std::int64_t start_ns = -1;   // the thread ran first; -1: not yet
-  std::int64_t charged_ns = 0;  // the thread's highest charge before
+  std::int64_t charged_ns = 0;  // the thread's highest charge before,
+  std::int64_t priced_ns = 0;   // and what of it was not computed
   shm::WorkCounts work{};       // done by the thread before
 };
 
 class ActivationLog {
  public:
-  // `with_work`: whether lines tell of calls and allocations, too.
+  // `with_work`: whether lines tell of calls and allocations, too, and of what was not computed.
   [[nodiscard]] std::string Open(const std::string& path, bool with_work);
-  // `thread` is 0 for the client's first one. `charged_ns` and `work` are the thread's in all.
+  // Of a thread, in all.
+  struct Used {
+    std::int64_t charged_ns = 0, priced_ns = 0;
+    shm::WorkCounts work{};
+  };
+  // `thread` is 0 for the client's first one.
   void Write(const std::string& client, int thread, const Activation& activation,
-             std::int64_t end_ns, std::int64_t charged_ns, const shm::WorkCounts& work);
+             std::int64_t end_ns, const Used& used);
   void Flush() { file_.Flush(); }
   [[nodiscard]] std::string Close() { return file_.Close(); }
 

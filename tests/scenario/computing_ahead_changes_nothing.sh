@@ -27,7 +27,7 @@ for run in (one, two):
     assert 0 < run["drift_ns"] <= run["drift_bound_ns"], run["drift_ns"]
     assert run["staleness_ns"] == 0, run["staleness_ns"]
     for name, client in run["clients"].items():
-        charged, computed = client["charged_ns"], client["host_cpu_ns"]
+        charged, computed = client["charged_ns"] - client["priced_ns"], client["host_cpu_ns"]
         assert abs(charged - computed) <= 0.01 * computed + 200_000, (name, charged, computed)
     for robot in ("first", "second"):
         planner, controller = (run["clients"][f"{robot}/{kind}"] for kind in ("planner", "controller"))

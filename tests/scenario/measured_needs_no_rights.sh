@@ -93,7 +93,7 @@ def check(s):
     assert s["staleness_ns"] == 0, s
     assert s["drift_ns"] <= 1_000_000, s
     for name, c in s["clients"].items():
-        assert abs(c["charged_ns"] - c["host_cpu_ns"]) <= 0.01 * c["host_cpu_ns"] + 200_000, (name, c)
+        assert abs(c["charged_ns"] - c["priced_ns"] - c["host_cpu_ns"]) <= 0.01 * c["host_cpu_ns"] + 200_000, (name, c)
 # How much a controller gets done in that time is a matter of the host.
 for rights in ("with", "without", "contained"):
     s = summary(rights, "flight")

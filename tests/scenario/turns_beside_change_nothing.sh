@@ -38,7 +38,7 @@ for cpus in (1, 2):
     assert run["commands"] == ticks * len(odds), run["commands"]
     for name, client in run["clients"].items():
         assert client["wait_status"] == 0, (name, client)
-        charged, computed = client["charged_ns"], client["host_cpu_ns"]
+        charged, computed = client["charged_ns"] - client["priced_ns"], client["host_cpu_ns"]
         assert abs(charged - computed) <= 0.01 * computed + 200_000, (name, charged, computed)
     sent = {}
     for row in csv.DictReader(open(f"{out}/{cpus}/commands.csv")):

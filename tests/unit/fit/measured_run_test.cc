@@ -25,7 +25,11 @@ class MeasuredRunTest : public testing::Test {
             {"robots", {{"r", {{"cores", 1}, {"speed", 0.5}}}}},
             {"clients",
              {{"r/planner",
-               {{"robot", "r"}, {"charged_ns", 1000}, {"calls", 20}, {"allocations", 30}}}}}};
+               {{"robot", "r"},
+                {"charged_ns", 1100},
+                {"priced_ns", 100},
+                {"calls", 20},
+                {"allocations", 30}}}}}};
   }
   void Write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ + "/" + name) << text;
@@ -33,8 +37,10 @@ class MeasuredRunTest : public testing::Test {
   // With a table of such lines.
   LoadResult<MeasuredRun> Read(const nlohmann::json& summary, const std::string& lines) const {
     Write("summary.json", summary.dump());
-    Write("activations.csv",
-          "client,thread,cause,release_ns,start_ns,end_ns,charged_ns,calls,allocations\n" + lines);
+    Write(
+        "activations.csv",
+        "client,thread,cause,release_ns,start_ns,end_ns,charged_ns,calls,allocations,priced_ns\n" +
+            lines);
     return ReadMeasuredRun(folder_);
   }
   std::string Complaint(const LoadResult<MeasuredRun>& read) const {
@@ -48,7 +54,7 @@ class MeasuredRunTest : public testing::Test {
 
 TEST_F(MeasuredRunTest, HasEachClientsActivations) {
   const auto read =
-      Read(Summary(), "r/planner,0,time,0,0,9,700,12,9\nr/planner,2,input,0,0,9,5,0,1\n");
+      Read(Summary(), "r/planner,0,time,0,0,9,750,12,9,50\nr/planner,2,input,0,0,9,5,0,1,0\n");
   ASSERT_EQ(Complaint(read), "");
   const auto& run = std::get<MeasuredRun>(read);
   EXPECT_THAT(run.warnings, IsEmpty());
@@ -63,11 +69,11 @@ TEST_F(MeasuredRunTest, HasEachClientsActivations) {
 
 TEST_F(MeasuredRunTest, LinesOfNoUseAreLeftOut) {
   const auto read = Read(Summary(),
-                         "r/planner,0,time,0,0,9,700,12,9\n"
-                         "r/planner,0,time,0,0,9,-700,12,9\n"
-                         "r/planner,0,time,0,0,9,nan,12,9\n"
-                         "r/planner,0,time,0,0,9,700,1e300,9\n"
-                         "r/stranger,0,time,0,0,9,700,12,9\n"
+                         "r/planner,0,time,0,0,9,700,12,9,0\n"
+                         "r/planner,0,time,0,0,9,-700,12,9,0\n"
+                         "r/planner,0,time,0,0,9,nan,12,9,0\n"
+                         "r/planner,0,time,0,0,9,700,1e300,9,0\n"
+                         "r/stranger,0,time,0,0,9,700,12,9,0\n"
                          "r/planner,0\n"
                          "\xff\xfe,,,\n"
                          "r/planner,0,time,0,0,9,700,1");

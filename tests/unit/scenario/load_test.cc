@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <variant>
 
+#include "coordinator/scenario/load_prices.h"
 #include "tests/unit/scenario/scenario_folder.h"
 #include "tests/unit/times.h"
 
@@ -58,6 +59,39 @@ TEST_F(LoadTest, TheWorldIsAsWritten) {
   EXPECT_THAT(predator.initial.orientation_xyzw, ElementsAre(0, 0, 0, 1));
   EXPECT_EQ(scenario.world->bodies[1].name, "prey");
   EXPECT_THAT(scenario.world->bodies[1].initial.linear_velocity_mps, ElementsAre(1, 2, 3));
+}
+
+TEST_F(LoadTest, PricesAreTheHostsUnlessGiven) {
+  const auto robot = [this](const std::string& cpu) {
+    return Load(WithReplaced("cpu: {cores: 4, speed: 0.5}", cpu)).robots[0];
+  };
+  EXPECT_EQ(robot("cpu: {}").prices.Hash(), ShippedPrices().Hash());
+  EXPECT_TRUE(robot("cpu: {}").prices_are_hosts);
+  EXPECT_EQ(robot("cpu: {costs: none}").prices.Hash(), NoPrices().Hash());
+  const std::string part =
+      "{send: [1us, 2us, 3us, 4us], send_further: [5us, 6us, 7us, 8us], receive: [0, 0, 9us, 1ms]}";
+  const std::string path =
+      folder_.Write("prices.yaml", "machine: a pi\ndds:\n  reliable: " + part +
+                                       "\n  best_effort: " + part + "\n  computed: " + part + "\n");
+  const RobotSpec given = robot("cpu: {costs: " + path + "}");
+  EXPECT_FALSE(given.prices_are_hosts);
+  EXPECT_EQ(given.prices.name, path + " (a pi)");
+  EXPECT_EQ(given.prices.dds_reliable.send.Of(65536), VirtualDuration::Microseconds(3));
+  EXPECT_EQ(given.prices.dds_best_effort.send_further.Of(0), VirtualDuration::Microseconds(5));
+  EXPECT_EQ(given.prices.dds_computed.receive.Of(1 << 20), VirtualDuration::Milliseconds(1));
+}
+
+TEST_F(LoadTest, AListOfPricesIsReadWithItsPlace) {
+  const auto complaint = [this](const std::string& text) {
+    const auto list = LoadPriceFile(folder_.Write("prices.yaml", text));
+    const auto* error = std::get_if<LoadError>(&list);
+    return error == nullptr ? "" : error->message;
+  };
+  EXPECT_THAT(complaint("dds: {}"),
+              HasSubstr("prices.yaml:1: dds lacks the key 'reliable'; add it"));
+  EXPECT_THAT(complaint("dds:\n  reliable:\n    send: [1us, 2us]\n"),
+              HasSubstr("prices.yaml:3: dds.reliable.send has to be four durations"));
+  EXPECT_THAT(complaint("ddss: {}"), HasSubstr("unknown key 'ddss'"));
 }
 
 TEST_F(LoadTest, WakingAThreadTakesNoTimeUnlessGiven) {

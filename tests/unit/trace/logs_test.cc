@@ -27,8 +27,8 @@ class LogsTest : public ::testing::Test {
 TEST_F(LogsTest, AnActivationIsALine) {
   ActivationLog log;
   ASSERT_EQ(log.Open(path_, false), "");
-  log.Write("r/planner", 0, {ReleaseCause::kInput, 10, 0, 12, 500}, 1010, 1400, {});
-  log.Write("r/planner", 7, {ReleaseCause::kThread, -1, 0, 0, 0}, 0, 0, {});
+  log.Write("r/planner", 0, {ReleaseCause::kInput, 10, 0, 12, 500}, 1010, {.charged_ns = 1400});
+  log.Write("r/planner", 7, {ReleaseCause::kThread, -1, 0, 0, 0}, 0, {});
   ASSERT_EQ(log.Close(), "");
   EXPECT_EQ(Written(),
             "client,thread,cause,release_ns,start_ns,end_ns,charged_ns\n"
@@ -39,12 +39,13 @@ TEST_F(LogsTest, AnActivationIsALine) {
 TEST_F(LogsTest, ALineTellsOfCallsAndAllocationsWhereTheyAreCounted) {
   ActivationLog log;
   ASSERT_EQ(log.Open(path_, true), "");
-  log.Write("r/planner", 0, {ReleaseCause::kInput, 10, 0, 12, 500, {7, 250}}, 1010, 1400,
-            {9, 1300});
+  log.Write("r/planner", 0, {ReleaseCause::kInput, 10, 0, 12, 500, 20, {7, 250}}, 1010,
+            {1400, 50, {9, 1300}});
   ASSERT_EQ(log.Close(), "");
-  EXPECT_EQ(Written(),
-            "client,thread,cause,release_ns,start_ns,end_ns,charged_ns,calls,allocations\n"
-            "r/planner,0,input,10,12,1010,900,2,11\n");
+  EXPECT_EQ(
+      Written(),
+      "client,thread,cause,release_ns,start_ns,end_ns,charged_ns,calls,allocations,priced_ns\n"
+      "r/planner,0,input,10,12,1010,900,2,11,30\n");
 }
 
 TEST_F(LogsTest, SlicesThatFollowEachOtherAreOne) {
@@ -184,7 +185,7 @@ TEST_F(LogsTest, AFolderThatIsNotThereIsSaid) {
   ActivationLog log;
   EXPECT_NE(log.Open("/nonexistent/a.csv", false).find("/nonexistent/a.csv cannot be written"),
             std::string::npos);
-  log.Write("nobody", 0, {}, 0, 0, {});
+  log.Write("nobody", 0, {}, 0, {});
   EXPECT_EQ(log.Close(), "");
 }
 
