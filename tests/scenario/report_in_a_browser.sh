@@ -124,7 +124,7 @@ for page in whole, part:
     assert page["unnamed"] == 0
     ids = [figure["id"] for figure in page["figures"]]
     assert ids == ["paths", "motion", "timeline", "response-times", "distances", "distance-over-time",
-                   "measure-prey-controller.response_p99-duration", "sweep-duration"], ids
+                   "measure-predator-controller.response_p99-duration", "sweep-duration"], ids
     assert all(figure["pictures"] == 1 for figure in page["figures"]), page["figures"]
 assert whole["view"].startswith("0.000 s to 1.500 s of virtual time"), whole["view"]
 assert part["view"].startswith("0.400 s to 0.500 s of virtual time"), part["view"]

@@ -182,13 +182,18 @@ TEST(ChooseRun, GoesByFolderAndByProcess) {
 TEST(ChooseRun, OfRunsWithinEachOtherAProcessMeansTheInnermost) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
-  const pid_t outer = fork();
+  // Each ends with its parent, also with one that ends as soon as the last one has begun.
+  const auto fork_bound = [] {
+    const pid_t pid = fork();
+    if (pid == 0) prctl(PR_SET_PDEATHSIG, SIGKILL);
+    return pid;
+  };
+  const pid_t outer = fork_bound();
   if (outer == 0) {
-    if (fork() == 0 && fork() == 0) {
+    if (fork_bound() == 0 && fork_bound() == 0) {
       const pid_t pids[2] = {getppid(), getpid()};
       if (write(ends[1], pids, sizeof pids) != sizeof pids) _exit(1);
     }
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
     for (;;) pause();
   }
   pid_t pids[2] = {};
