@@ -127,8 +127,9 @@ def ratio(those, to, share):
 for rights in ("with", "without"):
     check(summary(rights, "pieces"))
     alone, beside, short = (pieces(rights, log) for log in ("alone-long", "shared-long", "shared-short"))
-    beside_alone, shorter = ratio(alone, beside, 1), ratio(short, beside, 0.03)
-    print(rights, "rights: alone a piece costs", beside_alone, "of what it costs beside others, and short ones", shorter)
-    assert abs(beside_alone - 1) < 0.15, (rights, beside_alone)
+    beside_alone, shorter = ratio(alone, beside, 1), ratio(short, alone, 0.03)
+    print(rights, "rights: alone a piece costs", beside_alone, "of what it costs beside others; short ones of what it costs alone", shorter)
+    # A long piece is stopped for a short one some thirty times, and pays for each what a switch takes, 12 us on an idle host.
+    assert 0.7 < beside_alone < 1.15, (rights, beside_alone)
     assert abs(shorter - 1) < 0.25, (rights, shorter)
 PY
