@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "coordinator/engine/engine_part.h"
+#include "coordinator/prices/price_list.h"
+#include "coordinator/scenario/scenario.h"
 
 namespace tcs {
 
