@@ -57,7 +57,7 @@ static void AwaitReaders(dds_entity_t writer, int readers) {
     dds_sleepfor(DDS_MSECS(20));
     dds_get_publication_matched_status(writer, &matched);
   } while ((int)matched.current_count < readers);
-  dds_sleepfor(DDS_MSECS(300));
+  dds_sleepfor(DDS_SECS(1));  // until readers have met the writer, too
 }
 
 // Writes so many samples at that rate; returns the processor time of that.
@@ -125,7 +125,7 @@ static int Read(char** argv) {
 static int Source(char** argv) {
   const dds_entity_t writer = dds_create_writer(participant, Topic(0), Qos(1, 1), NULL);
   AwaitReaders(writer, 1);
-  dds_sleepfor(DDS_SECS(1));  // until the rest of the pipeline has met
+  dds_sleepfor(DDS_MSECS(500));  // until the rest of the pipeline has met
   WriteAll(writer, atoi(argv[2]), atof(argv[3]), atoi(argv[4]));
   dds_sleepfor(DDS_SECS(1));
   return 0;

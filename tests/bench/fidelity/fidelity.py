@@ -75,7 +75,7 @@ class Samples:
     def figures(self, said):
         readers = [list(map(float, text.split()[1:])) for text in said[:-1]]
         if any(len(reader) != 2 for reader in readers):
-            raise SystemExit(f"fidelity: a reader of {self.name} has nothing to say")
+            raise SystemExit(f"fidelity: a reader of {self.name} has got less than nine tenths of the samples")
         return [float(said[-1].split()[1])] + [statistics.mean(reader[i] for reader in readers) for i in (0, 1)]
 
 
