@@ -18,7 +18,8 @@
 // because the program's listeners run on it. A thread that is about to look at what has come first
 // waits until no program can send anything before the thread's own time any more (kRead), and then
 // until the deliverer is done (kDdsSync). Meanwhile the thread lends the deliverer its priority
-// (priority inheritance).
+// (priority inheritance). It does not wait for samples for whose receiving the deliverer still has
+// to pay (coordinator/calls/dds_costs.h): natively they are not there yet, either.
 //
 // Back-pressure: a process for which more waits than it can take at once is *full*, because it
 // takes more slowly than others write, or hangs. The coordinator shows in all areas which processes

@@ -122,7 +122,7 @@ struct Task : HostThread {
   std::uint64_t handed_lock = 0;
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
-  VirtualDuration debt;  // executed beyond a horizon, charged first at the next dispatch
+  VirtualDuration debt;  // executed beyond a horizon, or a price: passes first at the next dispatch
   int used_up = 0;       // dispatches in a row that ended at their horizon: the thread is computing
   VirtualDuration charged;
   VirtualDuration priced;              // of that: not computed (RunState::ChargePrice)
