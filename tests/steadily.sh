@@ -3,9 +3,10 @@
 # steadily BUILD COMMAND...: the time of COMMAND is real time, which a loaded machine bends. Where it fails and the machine has
 # kept a thread waiting for longer than 1 ms meanwhile, the failure says nothing of COMMAND, which is run again, five times
 # in all. A failure on a machine that did not stall stands. Others may have the processors for seconds: the next time is
-# further and further away, so that not all five are in one such while.
+# further and further away, so that not all five are in one such while. Each time COMMAND is a process group, which is
+# ended with it: a child that outlived a failed time would signal whoever has its parent's number by then.
 steadily() {
-  local build=$1 status ready stall later
+  local build=$1 status ready stall later program
   shift
   for later in 0 1 3 9 20; do
     sleep "$later"
@@ -13,7 +14,12 @@ steadily() {
     local watch=$stall_watch_PID from=${stall_watch[0]}
     read -r ready <&"$from"
     status=0
-    "$@" || status=$?
+    set -m
+    "$@" <&0 &
+    program=$!
+    set +m
+    wait "$program" || status=$?
+    kill -KILL -- "-$program" 2>/dev/null || true
     kill "$watch"
     read -r stall <&"$from"
     wait "$watch"
