@@ -24,8 +24,7 @@ struct Data {
 };
 static_assert(offsetof(Data, written) == 8 && offsetof(Data, parameters) == 16);
 
-// The code uses no stack, for the stack is unmapped, too. rdi: the first page; esi: the policy, or
-// negative.
+// The code uses no stack, for the stack is unmapped, too. rdi: the first page; esi: the policy.
 asm(R"(
   .pushsection .rodata
 tcs_bare_relay_begin:
@@ -40,8 +39,6 @@ tcs_bare_relay_begin:
   sub %rdi, %rsi
   mov $11, %eax
   syscall
-  test %r12d, %r12d
-  js 1f
   xor %edi, %edi              # sched_setscheduler
   mov %r12d, %esi
   lea 4096+16(%rbx), %rdx
@@ -86,14 +83,14 @@ bool TakeBackRseq() {
 
 }  // namespace
 
-void RelayInBareProcess(bool only_when_idle) {
+void RelayInBareProcess(int policy, int priority) {
   void* pages =
       mmap(nullptr, 2 * kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (pages == MAP_FAILED) return;
   char* code = static_cast<char*>(pages);
   std::memcpy(code, tcs_bare_relay_begin,
               static_cast<std::size_t>(tcs_bare_relay_end - tcs_bare_relay_begin));
-  const Data data;
+  const Data data{.parameters = {priority}};
   std::memcpy(code + kPage, &data, sizeof data);
   if (mprotect(code, kPage, PROT_READ | PROT_EXEC) != 0 || !TakeBackRseq()) {
     munmap(pages, 2 * kPage);
@@ -101,7 +98,7 @@ void RelayInBareProcess(bool only_when_idle) {
   }
   // No handler of this program's will be there any more.
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
-  reinterpret_cast<void (*)(char*, int)>(code)(code, only_when_idle ? SCHED_IDLE : -1);
+  reinterpret_cast<void (*)(char*, int)>(code)(code, policy);
 }
 
 }  // namespace tcs

@@ -1,5 +1,6 @@
 #include "coordinator/port/block_detector.h"
 
+#include <sched.h>
 #include <signal.h>
 #include <sys/eventfd.h>
 #include <sys/prctl.h>
@@ -22,12 +23,13 @@ namespace {
 // that may never get the processor again before the coordinator's end is known.
 [[noreturn]] void Detect(int arm, int fired) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const bool only_when_idle = !SetLevel(0, Level::kDetector);
+  const bool has_level = SetLevel(0, Level::kKernelOnly);  // until it has no memory to give up
   constexpr int kArm = 0, kFired = 1;
   if (dup2(arm, kArm) == kArm && dup2(fired, kFired) == kFired) {
     close_range(2, ~0u, 0);
-    RelayInBareProcess(only_when_idle);
-    if (only_when_idle) RunOnlyWhenIdle();
+    RelayInBareProcess(has_level ? SCHED_FIFO : SCHED_IDLE,
+                       has_level ? static_cast<int>(Level::kDetector) : 0);
+    if (!has_level || !SetLevel(0, Level::kDetector)) RunOnlyWhenIdle();
     std::uint64_t count = 0;
     const std::uint64_t one = 1;
     while (read(kArm, &count, sizeof count) == sizeof count) {

@@ -24,7 +24,7 @@ class BareProcessTest : public testing::TestWithParam<bool> {
     if (child_ != 0) return;
     dup2(asked_, 0);
     dup2(answered_, 1);
-    RelayInBareProcess(GetParam());
+    RelayInBareProcess(GetParam() ? SCHED_IDLE : SCHED_OTHER, 0);
     _exit(1);
   }
   ~BareProcessTest() override {

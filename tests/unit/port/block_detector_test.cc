@@ -3,12 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
+#include <fstream>
+#include <iterator>
 #include <string>
+
+#include "coordinator/port/levels.h"
 
 namespace tcs {
 namespace {
@@ -68,6 +74,45 @@ TEST(BlockDetector, EndsItsProcessWithItself) {
   }
   EXPECT_EQ(kill(pid, 0), -1);
   EXPECT_EQ(errno, ESRCH);
+}
+
+// The active thread may compute for ever above the detector, which would hold the locks of what it
+// has to unmap as long, or be the first to wait for them: no program on the machine could begin or
+// end.
+TEST(BlockDetector, HasGivenUpItsMemoryBeforeItSinksBelowThreadsThatCompute) {
+  cpu_set_t before;
+  ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
+  const int cpu = sched_getcpu();
+  const pid_t spinner = fork();
+  if (spinner == 0) {
+    alarm(10);  // should the test die
+    if (!BindTo(0, cpu) || !SetLevel(0, Level::kActive)) _exit(1);
+    for (;;) {
+    }
+  }
+  usleep(20'000);
+  int status = 0;
+  const bool is_permitted = waitpid(spinner, &status, WNOHANG) == 0;
+  ASSERT_TRUE(BindTo(0, cpu));  // where the detector is to begin, too
+  std::size_t size = 0;
+  if (is_permitted && SetLevel(0, Level::kCoordinator)) {
+    BlockDetector detector;
+    EXPECT_EQ(detector.Start(), "");
+    usleep(300'000);
+    std::ifstream maps("/proc/" + std::to_string(detector.pid()) + "/maps");
+    std::string all((std::istreambuf_iterator<char>(maps)), {});
+    size = all.size();
+    EXPECT_EQ(all.find('/'), std::string::npos) << all;
+    sched_param parameters{};
+    EXPECT_EQ(sched_getparam(detector.pid(), &parameters), 0);
+    EXPECT_EQ(parameters.sched_priority, static_cast<int>(Level::kDetector));
+    kill(spinner, SIGKILL);
+  }
+  LeaveRealTime(0);
+  sched_setaffinity(0, sizeof before, &before);
+  if (!is_permitted) GTEST_SKIP() << "SCHED_FIFO is not permitted";
+  EXPECT_EQ(waitpid(spinner, &status, 0), spinner);
+  EXPECT_GT(size, 0U);
 }
 
 TEST(BlockDetector, ThatWasNeverStartedEndsNothing) {
