@@ -7,7 +7,7 @@ import urllib.request
 
 
 class Browser:
-    def __init__(self, folder, width=1000, height=900, webgl=True):
+    def __init__(self, folder, width=800, height=640, webgl=True):
         self.driver = subprocess.Popen(["chromedriver", "--port=0", f"--log-path={folder}/driver.log"],
                                        stdout=subprocess.PIPE, text=True)
         port = None
@@ -24,6 +24,8 @@ class Browser:
             ["--disable-gpu", "--disable-3d-apis"]
         # On a busy machine a picture takes long; a graphics process is not to be ended for that.
         switches.append("--disable-gpu-watchdog")
+        # The processor draws each pixel, four times where edges are smoothed: most of what such a test takes.
+        switches.append("--webgl-antialiasing-mode=none")
         wanted = {"browserName": "chrome", "timeouts": {"script": 95_000}, "goog:chromeOptions": {"args": switches, "binary": "/usr/bin/chromium"},
                   "goog:loggingPrefs": {"browser": "ALL"}}
         self.session = self.base + "/session/" + self.call(

@@ -157,7 +157,7 @@ def small_and_dark(browser, _):
         left, _, width, height = browser.rect(f"[data-run={name}]")
         assert left >= 0 and left + width <= 400 and height >= 30, (name, left, width, height)
     assert sum(light[:40]) > sum(pixels(browser)[:40]) + 2000, "the world is as bright in the dark"
-    browser.resize(1000, 900)
+    browser.resize(800, 640)
     browser.media()
 
 

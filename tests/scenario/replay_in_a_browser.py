@@ -260,7 +260,7 @@ def forces(browser):
     left, top, width, height = browser.rect(".force-scale")
     assert left >= 0 and left + width <= 400 and browser.js("return document.scrollingElement.scrollWidth") == 400
     browser.media()
-    browser.resize(1000, 900)
+    browser.resize(800, 640)
     browser.js("tcs.seek(0.3)")
     browser.after_pictures()
     left, top, width, height = browser.rect("[data-set=forces]")
@@ -281,7 +281,7 @@ def small_and_touched(browser):
     left, top, width, height = browser.rect("#motion .live svg")
     browser.finger((left + width * 0.6, top + height / 2), (left + width * 0.6, top + height / 2))
     assert 1.5 < now(browser) < 3, now(browser)
-    browser.resize(1000, 900)
+    browser.resize(800, 640)
 
 
 def dark(browser):
