@@ -6,7 +6,7 @@
 # further and further away, so that not all five are in one such while. Each time COMMAND is a process group, which is
 # ended with it: a child that outlived a failed time would signal whoever has its parent's number by then.
 steadily() {
-  local build=$1 status ready stall later program
+  local build=$1 status ready stall later tried
   shift
   for later in 0 1 3 9 20; do
     sleep "$later"
@@ -16,10 +16,10 @@ steadily() {
     status=0
     set -m
     "$@" <&0 &
-    program=$!
+    tried=$!
     set +m
-    wait "$program" || status=$?
-    kill -KILL -- "-$program" 2>/dev/null || true
+    wait "$tried" || status=$?
+    kill -KILL -- "-$tried" 2>/dev/null || true
     kill "$watch"
     read -r stall <&"$from"
     wait "$watch"
