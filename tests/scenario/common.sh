@@ -6,6 +6,8 @@ tcsim=$build/bin/tcsim
 # Debian's Python goes first: it has the packages, and another one may be a script that starts three programs (pyenv), a
 # thousand times a test.
 PATH=/usr/bin:$PATH
+# Where no locale is set Python would set one for what it starts, which then costs more than what a script starts.
+export PYTHONCOERCECLOCALE=0
 if [[ ${3:-} == in_container ]]; then
   export TCS_BUILD=$build
   tcsim=$source_root/tests/scenario/contained_tcsim.sh
