@@ -193,18 +193,26 @@ ssize_t ReadLike(int fd, Reads reads, Forms<Look, Try, Call> forms) {
   if (type < 0 && !CanWait(fd, &kind)) return ToErrno(forms.call(fd));
   Taker take(*t, kind, reads.takes, forms);
   if (type == SOCK_DGRAM) return WaitAndRead(*t, fd, take);
+  const bool misses_nothing =
+      FindTimerFd(fd) == nullptr && NowNs(*t) <= t->slot->clock.read_safe_ns;
+  // What is there is taken before it is asked whether the call may wait: mostly something is there.
+  const bool is_tried = misses_nothing && !reads.dont_wait && !take.IsSocket();
+  if (is_tried) {
+    if (const long result = take.TryIt(fd); result != -EAGAIN) {
+      return t->passes_on && IsNonBlocking(fd) ? ToErrno(result) : PassOnAfter(*t, result);
+    }
+  }
+  bool has_looked = is_tried && take.HasForm();
   if (reads.dont_wait || IsNonBlocking(fd)) {
+    if (has_looked) return Fail(EAGAIN);
     HoldForReadFrom(*t, fd, reads.socket);
     return ToErrno(take.Make(fd));
   }
   const auto wants_more = [&] { return take.IsSocket() && WantsMore(fd); };
-  const bool misses_nothing =
-      FindTimerFd(fd) == nullptr && NowNs(*t) <= t->slot->clock.read_safe_ns;
-  bool has_looked = false;
-  if (misses_nothing && !wants_more()) {
+  if (misses_nothing && !is_tried && !wants_more()) {
     if (const long result = take.TryIt(fd); result != -EAGAIN) return PassOnAfter(*t, result);
     has_looked = take.HasForm();
-  } else if (PollNow(fd, POLLIN)) {
+  } else if (!is_tried && PollNow(fd, POLLIN)) {
     if (!HoldForReadFrom(*t, fd, reads.socket)) return PassOnAfter(*t, take.Make(fd));
     // While the thread held, another thread may have taken what was there.
     if (wants_more()) take.UseNoForm();

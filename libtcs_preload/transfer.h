@@ -57,7 +57,8 @@ class Rest {
   iovec copy_[kCopied];
 };
 
-// `part(fd, iov, count)` does what it can at once (-EAGAIN: nothing), the rest is waited for. A
+// `part(fd, iov, count)` does what it can at once (-EAGAIN: nothing), the rest is waited for,
+// unless the descriptor is not to wait, which is asked only then: mostly all is done at once. A
 // part that the descriptor does not have (-EOPNOTSUPP), or that fails although the descriptor is
 // ready, is left to `whole(fd)`. Returns what the call returns to its caller, or -errno.
 template <class Part, class Whole>
@@ -66,7 +67,7 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
   const int saved = errno;
   CallFile file(thread, fd);
   std::int64_t deadline_ns = -1;
-  bool is_last = false;  // the time is over
+  bool may_wait = false, is_last = false;  // last: the time is over
   for (long done = 0;;) {
     std::size_t count = 0;
     const iovec* iov = rest.Next(&count);
@@ -79,6 +80,10 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
     }
     const bool can_part = n != -EOPNOTSUPP || done > 0;
     if (n != -EAGAIN && can_part) return done > 0 ? done : n;
+    if (!may_wait && IsNonBlocking(file.fd())) {
+      return !can_part ? whole(file.fd()) : done > 0 ? done : -EAGAIN;
+    }
+    may_wait = true;
     const bool is_hidden = (events & POLLIN) != 0 && IsHidden(thread, OutsideOf(file.fd()));
     if ((!can_part || done == 0) && !is_hidden && PollNow(file.fd(), events)) {
       if (!can_part) return whole(file.fd());

@@ -64,8 +64,7 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   pthread_testcancel();
   if (t == nullptr || !CanWait(fd)) return ToErrno(whole(fd));
   HoldForWrite(*t);
-  const bool at_once = !AreSound(iov, count) || IsNonBlocking(fd);
-  Rest rest(iov, at_once ? 0 : count);
+  Rest rest(iov, AreSound(iov, count) ? count : 0);
   if (NotesActivity()) NoteDatagram(*t, fd, nullptr, 0);
   const OutsideAsk ask = BeginAsk(fd);
   const long result = rest.bytes() == 0
@@ -94,9 +93,7 @@ int HoldToSend(GuestThread& t, int fd, const msghdr& message) {
 // Control data travels with the first part.
 template <class Whole>
 ssize_t SendInParts(GuestThread* t, int fd, msghdr message, int flags, Whole whole) {
-  if (message.msg_iovlen > kMostBuffers || DontWait(flags) || IsNonBlocking(fd)) {
-    return ToErrno(whole(fd));
-  }
+  if (message.msg_iovlen > kMostBuffers || DontWait(flags)) return ToErrno(whole(fd));
   Rest rest(message.msg_iov, message.msg_iovlen);
   return ToErrno(TransferAll(
       *t, fd, POLLOUT, SO_SNDTIMEO, rest,
