@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Whole DDS systems natively, in real time and on one processor, beside the same binaries under tcs on one core.
+"""Calls of the kernel and whole DDS systems natively, in real time and on one processor, beside the same binaries under tcs on
+one core.
 
-usage: fidelity.py TCSIM NODE [--rounds N] [--rows samples|pipeline] [--quick] [--json]
+usage: fidelity.py TCSIM NODE CALLS [--rounds N] [--rows calls|samples|pipeline] [--quick] [--json]
 
 Natively over the loopback interface; under tcs as by default, measured and under set costs. In turns: each row natively,
 then measured, so many rounds; once under set costs, which are the same in each round, and once without prices. A native run
@@ -43,12 +44,13 @@ def natively(commands, processor):
     raise SystemExit("fidelity: the hypervisor takes more than 1 % of the processors all the time; try again later")
 
 
-def under_tcs(tcsim, commands, accounting, *costs):
+def under_tcs(tcsim, commands, accounting, *costs, without_rights=False):
     with tempfile.TemporaryDirectory() as folder:
         clients = {f"c{i}": {"command": command} for i, command in enumerate(commands)}
         with open(f"{folder}/s.yaml", "w") as scenario:
             json.dump({"duration": "30s", "robots": {"computer": {"clients": clients}}}, scenario)
-        run = subprocess.run([tcsim, "run", f"{folder}/s.yaml", "--accounting", accounting, "--out", f"{folder}/out", *costs],
+        prefix = ["prlimit", "--rtprio=0:0", "setpriv", "--bounding-set=-sys_nice", "--inh-caps=-sys_nice"] if without_rights else []
+        run = subprocess.run([*prefix, tcsim, "run", f"{folder}/s.yaml", "--accounting", accounting, "--out", f"{folder}/out", *costs],
                              capture_output=True, text=True, timeout=600)
         said = []
         for i in range(len(commands)):
@@ -95,6 +97,29 @@ class Pipeline:
         return list(map(float, said[0].split()[1:]))
 
 
+class Calls:
+    """What one call takes by its program's own clock, batch by batch. The batches of a run are one sample each."""
+
+    name = "calls"
+
+    def __init__(self, calls, batches=11):
+        self.commands = [[calls, str(batches)]]
+
+    @staticmethod
+    def batches(said):
+        return {name: list(map(float, values)) for name, *values in map(str.split, said[0].splitlines())}
+
+    @staticmethod
+    def print(native, measured, unprivileged):
+        """Each: operation to its batches, in ns."""
+        print("\nIn ns: native, median and p10 to p90 · measured · ratio · measured without real-time priority · ratio\n")
+        print("| operation | native | measured | ratio | without rights | ratio |\n|" + "---|" * 6)
+        for name, values in native.items():
+            low, *_, high = statistics.quantiles(values, n=10)
+            middle, ours, without = (statistics.median(of[name]) for of in (native, measured, unprivileged))
+            print(f"| {name} | {middle:,.0f} ({low:,.0f}–{high:,.0f}) | {ours:,.0f} | {ours / middle:.2f} | {without:,.0f} | {without / middle:.2f} |")
+
+
 def text_of(values):
     """The median, and the range."""
     short = (lambda x: f"{x:.3f}") if max(values) <= 1 else (lambda x: f"{x:,.0f}")
@@ -102,12 +127,25 @@ def text_of(values):
     return middle if len(set(map(short, values))) == 1 else f"{middle} ({short(min(values))}–{short(max(values))})"
 
 
+def measure_calls(tcsim, calls, rounds, processor):
+    """By kind of run: operation to its batches of all rounds."""
+    found = {"native": {}, "measured": {}, "unprivileged": {}}
+    for _ in range(rounds):
+        for kind, said in (("native", natively(calls.commands, processor)),
+                           ("measured", under_tcs(tcsim, calls.commands, "measured")),
+                           ("unprivileged", under_tcs(tcsim, calls.commands, "measured", without_rights=True))):
+            for name, values in calls.batches(said).items():
+                found[kind].setdefault(name, []).extend(values)
+    return found
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("tcsim")
     parser.add_argument("node")
+    parser.add_argument("calls")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--rows", choices=("samples", "pipeline"), help="these alone")
+    parser.add_argument("--rows", choices=("calls", "samples", "pipeline"), help="these alone")
     parser.add_argument("--quick", action="store_true", help="one round of few rows: that each can be measured")
     parser.add_argument("--json", action="store_true")
     given = parser.parse_args()
@@ -124,8 +162,12 @@ def main():
                  Samples(node, 64 << 10, 200, readers=8), Samples(node, 1 << 20, 50, readers=2)]
         rows += [Pipeline(node, work) for work in (3000, 6000, 8000, 8400, 8600, 8800, 9000, 9250, 9500, 9750, 10000, 12000)]
     kinds = {"samples": Samples, "pipeline": Pipeline}
-    rows = [row for row in rows if given.rows is None or isinstance(row, kinds[given.rows])]
     found, columns = {}, None
+    if given.rows in (None, "calls"):
+        found["calls"] = measure_calls(given.tcsim, Calls(os.path.abspath(given.calls), 3 if given.quick else 11), given.rounds, processor)
+        if not given.json:
+            Calls.print(**found["calls"])
+    rows = [row for row in rows if given.rows is None or isinstance(row, kinds.get(given.rows, ()))]
     for row in rows:
         by = found[row.name] = {"native": [], "measured": []}
         for _ in range(given.rounds):
