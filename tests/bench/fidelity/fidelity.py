@@ -98,9 +98,7 @@ class Pipeline:
 
 
 class Calls:
-    """What one call takes by its program's own clock, batch by batch. The batches of a run are one sample each."""
-
-    name = "calls"
+    """What one call takes by its program's own clock, batch by batch."""
 
     def __init__(self, calls, batches=11):
         self.commands = [[calls, str(batches)]]
