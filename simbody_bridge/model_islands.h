@@ -7,6 +7,7 @@
 // remains a function of the commands, and to take back motion takes back the meetings, too.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <functional>

@@ -1,5 +1,6 @@
 #include "coordinator/explain/told.h"
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <optional>

@@ -1,5 +1,6 @@
 #include "coordinator/report/replay_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>

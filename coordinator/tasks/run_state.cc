@@ -1,5 +1,7 @@
 #include "coordinator/tasks/run_state.h"
 
+#include <algorithm>
+
 #include "coordinator/port/proc_files.h"
 
 namespace tcs {

@@ -5,6 +5,7 @@
 //   planner NAME X Y Z [HZ]
 //   in   NAME/planner_pose  as the position loop's
 //   out  NAME/trajectory    (trajectory.h)
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>

@@ -1,5 +1,6 @@
 #include "simbody_bridge/rays/scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "simbody_bridge/model/rigid_tree.h"

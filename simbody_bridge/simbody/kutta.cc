@@ -1,5 +1,6 @@
 #include "simbody_bridge/simbody/kutta.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace tcs {

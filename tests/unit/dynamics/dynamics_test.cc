@@ -1,4 +1,5 @@
 // The motion itself, against closed forms.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,7 @@
 // Models at the edge of what engines bear: they move, or are refused in one sentence.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 

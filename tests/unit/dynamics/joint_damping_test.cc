@@ -1,5 +1,6 @@
 // Joints' own damping and friction beside closed forms, from inertias of 1 kg m^2 to such as nine
 // decades less: as exact, and in as many steps.
+#include <algorithm>
 #include <cmath>
 #include <string>
 

@@ -1,4 +1,5 @@
 // Rotors, and joints that are driven with a lag: against closed forms, and taken back.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>

@@ -1,6 +1,7 @@
 // Sensors of robots on the engines' own motion, against closed forms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
