@@ -29,7 +29,7 @@ namespace {
     close_range(2, ~0u, 0);
     RelayInBareProcess(has_level ? SCHED_FIFO : SCHED_IDLE,
                        has_level ? static_cast<int>(Level::kDetector) : 0);
-    if (!has_level || !SetLevel(0, Level::kDetector)) RunOnlyWhenIdle();
+    if (!SetLevel(0, Level::kDetector)) RunOnlyWhenIdle();
     std::uint64_t count = 0;
     const std::uint64_t one = 1;
     while (read(kArm, &count, sizeof count) == sizeof count) {

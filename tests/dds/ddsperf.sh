@@ -59,9 +59,8 @@ between 3 '-Qsamples:2700 sub' 'pub 1kHz size 256'
 says "$first" ' 2\.0[0-4].* lost 0 delta (9[5-9][0-9]|10[0-4][0-9]) lost 0 '
 between 3 '-Qsamples:2700 sub polling' 'pub 1kHz size 16k'
 says "$first" ' 2\.0[0-4].* lost 0 delta (9[5-9][0-9]|10[0-4][0-9]) lost 0 '
-# As fast as they can, which are some 100,000 small samples in a fifth of a second, 2,000 of 16 KB (it takes them half of that
-# to meet), and 1,000 round trips in a tenth: far more than
-# is asked for, as it is the host that decides. (Pings begin after a second.)
+# As fast as they can, which are some 100,000 small samples in a fifth of a second (of 16 KB fewer than 1,000 have been seen) and
+# 1,000 round trips in a tenth: far more than is asked for, as it is the host that decides. (Pings begin after a second.)
 between 1.1 'pong' '-Qroundtrips:200 ping'
 between 1.1 'pong waitset' '-Qroundtrips:200 ping waitset'
 between 0.2 '-Qsamples:1000 sub' 'pub size 64'
