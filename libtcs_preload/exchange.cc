@@ -8,6 +8,9 @@
 #include <string.h>
 #include <time.h>
 
+#include <algorithm>
+
+#include "libtcs_preload/own_work.h"
 #include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/attach_protocol.h"
@@ -169,6 +172,14 @@ void TakeOutWait(shm::ClockPage& page, const Charged& at_notification, std::int6
                  own.ns + own.way_ns, most_ns);
 }
 
+// Takes out what the clock has counted since the notification, in the thread's turn: the
+// coordinator has let the thread go on, at once or in another turn.
+void TakeOutWayOut(shm::ClockPage& page, const Charged& at_notification) {
+  const shm::ClockReading now = shm::ReadClock(page);
+  const std::int64_t begun_ns = std::max(at_notification.cpu_ns, page.base_cpu_ns);
+  shm::TakeOut(page, now, now.cpu_ns - begun_ns, kMostGateNs);
+}
+
 // How many handlers of a thread's had begun before it waits; a handler that begins later ends the
 // wait. Null: no handler ends the wait.
 using HandlersBefore = const std::uint32_t*;
@@ -184,6 +195,8 @@ bool WaitAtGate(shm::ThreadSlot& slot, HandlersBefore handlers, const Charged& c
       }
       if (OnlyCpuClockTells(slot.clock) || RunsBeside(slot)) {
         TakeOutWait(slot.clock, charged, most_ns);
+      } else {
+        TakeOutWayOut(slot.clock, charged);
       }
       return true;
     }
@@ -195,9 +208,6 @@ bool WaitAtGate(shm::ThreadSlot& slot, HandlersBefore handlers, const Charged& c
     if (handlers != nullptr && OwnState().handlers != *handlers) return false;
     const long result =
         RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting, Arg(&kGateTurn));
-    if (result == 0 && !OnlyCpuClockTells(slot.clock) && !RunsBeside(slot)) {
-      shm::TakeOutGate(slot.clock, shm::ReadClock(slot.clock), kMostGateNs);
-    }
     if (result == -ETIMEDOUT) DieIfCoordinatorIsGone();
     if (result == -EINTR && handlers != nullptr &&
         slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) {
@@ -328,6 +338,8 @@ struct Interrupted {
 // interrupted another exchange.
 Reply ExchangeAnywhere(GuestThread& thread, const Request& request) {
   Reply reply;
+  const bool is_own_work = thread.own_work_tsc != 0;
+  EndOwnWork(thread);
   if (thread.depth++ == 0) {
     reply = ExchangeOnce(thread, request);
   } else {
@@ -336,6 +348,7 @@ Reply ExchangeAnywhere(GuestThread& thread, const Request& request) {
     outer.PutBack(*thread.slot);
   }
   --thread.depth;
+  if (is_own_work) BeginOwnWork(thread);
   return reply;
 }
 

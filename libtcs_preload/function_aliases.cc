@@ -36,6 +36,7 @@ TCS_ALIAS(__wait, wait);
 TCS_ALIAS(__waitpid, waitpid);
 TCS_ALIAS(__write, write);
 TCS_ALIAS(bsd_signal, signal);
+TCS_ALIAS(gsignal, raise);
 TCS_ALIAS(pthread_yield, sched_yield);
 TCS_ALIAS(ssignal, signal);
 TCS_ALIAS(thrd_yield, sched_yield);

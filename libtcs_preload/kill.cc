@@ -7,6 +7,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/own_work.h"
 #include "libtcs_preload/pthread_id.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
@@ -37,6 +38,7 @@ template <class Call>
 auto SendSignal(Receiver receiver, int signal, std::uint32_t by, Call call) {
   const Entered t;
   if (t == nullptr || signal == 0) return call();
+  const OwnWork own(t);
   HoldForWrite(*t);
   const pid_t process = receiver.process;
   if (g_header->turns_beside != 0 && process != 0 && process != RawSyscall(SYS_getpid)) {
@@ -44,7 +46,7 @@ auto SendSignal(Receiver receiver, int signal, std::uint32_t by, Call call) {
   }
   std::atomic<std::uint32_t>& signals = t->slot->signals;
   signals.fetch_add(by, std::memory_order_relaxed);
-  const auto result = call();
+  const auto result = AsProgram(*t, call);
   if (result == 0) {
     Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kSignalled,
                          .args = {process > 0 ? process : 0, receiver.thread, signal}});
@@ -79,6 +81,13 @@ TCS_EXPORT int killpg(pid_t group, int signal) noexcept {
 TCS_EXPORT int tgkill(pid_t pid, pid_t tid, int signal) {
   return static_cast<int>(ToErrno(SendSignal(
       {pid, tid}, signal, kSendsItself, [&] { return SendRaw(SYS_tgkill, pid, tid, signal); })));
+}
+
+// The C library's own would be handed over to the coordinator.
+TCS_EXPORT int raise(int signal) noexcept {
+  const auto pid = static_cast<pid_t>(RawSyscall(SYS_getpid));
+  const auto tid = static_cast<pid_t>(RawSyscall(SYS_gettid));
+  return tgkill(pid, tid, signal);
 }
 
 TCS_EXPORT int sigqueue(pid_t pid, int signal, const sigval value) noexcept {

@@ -8,6 +8,9 @@
 
 namespace tcs::preload {
 
+// The kernel has no form of the call that cannot wait. The value is no result of a call.
+inline constexpr long kNoForm = -4096;
+
 // read and readv. A `count` below 0 or too large is asked for like any other. -EOPNOTSUPP: the
 // descriptor has no such form, as terminals and some others; but it can be read.
 long TryRead(int fd, const iovec* iov, int count);

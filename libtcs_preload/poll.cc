@@ -16,6 +16,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/local_sockets.h"
 #include "libtcs_preload/outside.h"
+#include "libtcs_preload/own_work.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/select_sets.h"
 #include "libtcs_preload/signal_mask.h"
@@ -58,8 +59,11 @@ template <class IsReady, class Hold, class Probe, class Wait>
 int CallWithMask(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, bool looks_first,
                  IsReady is_ready, Hold hold, Probe probe, Wait wait) {
   pthread_testcancel();
+  const OwnWork own(&t);
   MaskedWait masked(mask);
-  const long found = ProbeAndWait(t, timeout_ns, masked, looks_first, is_ready, hold, probe, wait);
+  const auto probe_as_program = [&] { return AsProgram(t, probe); };
+  const long found =
+      ProbeAndWait(t, timeout_ns, masked, looks_first, is_ready, hold, probe_as_program, wait);
   masked.Restore();
   if (found == -EINTR) pthread_testcancel();
   return static_cast<int>(ToErrno(found));

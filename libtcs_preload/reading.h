@@ -17,6 +17,7 @@
 #include "libtcs_preload/local_sockets.h"
 #include "libtcs_preload/non_blocking.h"
 #include "libtcs_preload/outside.h"
+#include "libtcs_preload/own_work.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/receipts.h"
 #include "libtcs_preload/tcp.h"
@@ -37,9 +38,6 @@ struct Reads {
   bool dont_wait = false, socket = false, takes = true;
   bool is_receive = false;  // recv and its kin
 };
-
-// The kernel has no form of the call that cannot wait. The value is no result of a call.
-inline constexpr long kNoForm = -4096;
 
 // The forms of a call that reads a descriptor. `look`: the answer that the kernel gives without
 // waiting although nothing is there, or -EAGAIN. `try_it`: the kernel's answer in a form that
@@ -69,14 +67,16 @@ bool ReadDatagram(GuestThread& t, int fd, Reads reads, Look look, ssize_t* resul
   const std::int64_t now = NowNs(t);
   const SafeTimes safe = SafeTimesOf(t);
   BeginTaking(t, fd, true);
-  long got = look(fd);
+  const auto look_as_program = [&] { return AsProgram(t, [&] { return look(fd); }); };
+  long got = look_as_program();
   if (got == -EAGAIN) {
     if (!reads.dont_wait && !IsNonBlocking(fd)) return false;
     if (!IsSafeLook(t, fd, now, safe)) {
       HoldForRead(t);
       BeginTaking(t, fd, true);
-      got = look(fd);
+      got = look_as_program();
     }
+    if (got == -EAGAIN) AnswerByLook(t);
   }
   if (got > 0 && reads.takes) NoteReceived(t);
   if (got >= 0 && reads.takes && NotesActivity()) NoteDatagramsReceived(t, fd, 1, true);
@@ -106,18 +106,25 @@ class Taker {
   void UseNoForm() { has_form_ = false; }
 
   // Takes by the call itself, which may wait.
-  long Make(int fd) { return Take(fd, forms_.call); }
+  long Make(int fd) {
+    const long result = Take(fd, [this](int from) { return MakeOn(from); });
+    if (result == -EAGAIN) AnswerByLook(t_);
+    return result;
+  }
   // -EAGAIN: nothing is there.
   long TryIt(int fd) {
     return Take(fd, [this](int from) {
-      const long result = has_form_ ? forms_.try_it(from) : kNoForm;
+      const long result = has_form_ ? AsProgram(t_, [&] { return forms_.try_it(from); }) : kNoForm;
       has_form_ = result != kNoForm;
       if (has_form_) return result;
-      return PollNow(from, POLLIN) ? forms_.call(from) : -EAGAIN;
+      return PollNow(from, POLLIN) ? MakeOn(from) : -EAGAIN;
     });
   }
 
  private:
+  long MakeOn(int from) {
+    return AsProgram(t_, [&] { return forms_.call(from); });
+  }
   template <class By>
   long Take(int fd, By by) {
     if (acknowledges_) acknowledges_ = AcknowledgeAtOnce(fd);
@@ -180,6 +187,7 @@ ssize_t ReadLike(int fd, Reads reads, Forms<Look, Try, Call> forms) {
   const Entered t;
   pthread_testcancel();
   if (t == nullptr) return ToErrno(forms.call(fd));
+  const OwnWork own(t);
   if (OutsidePlace* place = OutsideOf(fd); place != nullptr) {
     FdKind kind = FdKind::kOther;
     CanWait(fd, &kind);
@@ -190,7 +198,9 @@ ssize_t ReadLike(int fd, Reads reads, Forms<Look, Try, Call> forms) {
   FdKind kind = FdKind::kSocket;
   const int type = reads.is_receive ? TypeOfSocket(fd) : -1;
   if (type == SOCK_DGRAM && ReadDatagram(*t, fd, reads, forms.look, &got)) return got;
-  if (type < 0 && !CanWait(fd, &kind)) return ToErrno(forms.call(fd));
+  if (type < 0 && !CanWait(fd, &kind)) {
+    return ToErrno(AsProgram(*t, [&] { return forms.call(fd); }));
+  }
   Taker take(*t, kind, reads.takes, forms);
   if (type == SOCK_DGRAM) return WaitAndRead(*t, fd, take);
   const bool misses_nothing =
@@ -204,7 +214,10 @@ ssize_t ReadLike(int fd, Reads reads, Forms<Look, Try, Call> forms) {
   }
   bool has_looked = is_tried && take.HasForm();
   if (reads.dont_wait || IsNonBlocking(fd)) {
-    if (has_looked) return Fail(EAGAIN);
+    if (has_looked) {
+      AnswerByLook(*t);
+      return Fail(EAGAIN);
+    }
     HoldForReadFrom(*t, fd, reads.socket);
     return ToErrno(take.Make(fd));
   }
@@ -222,7 +235,8 @@ ssize_t ReadLike(int fd, Reads reads, Forms<Look, Try, Call> forms) {
     has_looked = true;
   }
   if (!has_looked) {
-    if (const long answer = forms.look(fd); answer != -EAGAIN) return ToErrno(answer);
+    const long answer = AsProgram(*t, [&] { return forms.look(fd); });
+    if (answer != -EAGAIN) return ToErrno(answer);
   }
   return WaitAndRead(*t, fd, take);
 }

@@ -10,6 +10,7 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/interrupted_call.h"
+#include "libtcs_preload/own_work.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
 
@@ -69,6 +70,7 @@ void OnSignal(int signal, siginfo_t* info, void* context) {
     if (may_fail && (!call.IsHandedOver() || HasWaited())) call.FailWithEintr();
   }
   if (thread.depth > 0) AwaitTurnOfHandler(thread);
+  const HandlersWork work(thread);
   wanted.handler()(signal, info, context);
 }
 

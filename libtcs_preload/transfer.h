@@ -11,6 +11,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/kernel_wait.h"
 #include "libtcs_preload/outside.h"
+#include "libtcs_preload/own_work.h"
 
 namespace tcs::preload {
 
@@ -71,7 +72,7 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
   for (long done = 0;;) {
     std::size_t count = 0;
     const iovec* iov = rest.Next(&count);
-    const long n = part(file.fd(), iov, count);
+    const long n = AsProgram(thread, [&] { return part(file.fd(), iov, count); });
     if (n > 0) {
       done += n;
       rest.Use(static_cast<std::size_t>(n));
@@ -81,12 +82,14 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
     const bool can_part = n != -EOPNOTSUPP || done > 0;
     if (n != -EAGAIN && can_part) return done > 0 ? done : n;
     if (!may_wait && IsNonBlocking(file.fd())) {
-      return !can_part ? whole(file.fd()) : done > 0 ? done : -EAGAIN;
+      if (!can_part) return AsProgram(thread, [&] { return whole(file.fd()); });
+      AnswerByLook(thread);
+      return done > 0 ? done : -EAGAIN;
     }
     may_wait = true;
     const bool is_hidden = (events & POLLIN) != 0 && IsHidden(thread, OutsideOf(file.fd()));
     if ((!can_part || done == 0) && !is_hidden && PollNow(file.fd(), events)) {
-      if (!can_part) return whole(file.fd());
+      if (!can_part) return AsProgram(thread, [&] { return whole(file.fd()); });
       // The call waits for what cannot be polled: room in the queue of the socket that it sends to.
       return WaitInKernel(thread, true, [&] { return whole(file.fd()); });
     }

@@ -7,6 +7,7 @@
 
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/own_work.h"
 #include "shm/clock_page.h"
 #include "shm/time_values.h"
 
@@ -32,6 +33,7 @@ Now ReadNowSlowly(GuestThread& thread);
 // again as the reading itself.
 inline Now ReadNow(GuestThread& thread) {
   shm::ClockPage& page = thread.slot->clock;
+  if (__builtin_expect(thread.own_work_tsc != 0, 0)) TakeOutOwnWork(thread);
   const shm::ClockReading reading = shm::ReadClock(page);
   if (__builtin_expect(reading.time_ns < reading.horizon_ns && !shm::IsCheckDue(page, reading),
                        1)) {

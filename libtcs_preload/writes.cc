@@ -20,6 +20,7 @@
 #include "libtcs_preload/local_sockets.h"
 #include "libtcs_preload/outside.h"
 #include "libtcs_preload/own_receivers.h"
+#include "libtcs_preload/own_work.h"
 #include "libtcs_preload/pieces.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/signal_actions.h"
@@ -62,13 +63,16 @@ template <class Whole>
 ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   const Entered t;
   pthread_testcancel();
-  if (t == nullptr || !CanWait(fd)) return ToErrno(whole(fd));
+  if (t == nullptr) return ToErrno(whole(fd));
+  const OwnWork own(t);
+  const auto at_once = [&] { return AsProgram(*t, [&] { return whole(fd); }); };
+  if (!CanWait(fd)) return ToErrno(at_once());
   HoldForWrite(*t);
   Rest rest(iov, AreSound(iov, count) ? count : 0);
   if (NotesActivity()) NoteDatagram(*t, fd, nullptr, 0);
   const OutsideAsk ask = BeginAsk(fd);
   const long result = rest.bytes() == 0
-                          ? whole(fd)
+                          ? at_once()
                           : TransferAll(*t, fd, POLLOUT, SO_SNDTIMEO, rest, WritePart, whole);
   if (result < 0 && NotesActivity()) TakeBackDatagram(*t, fd, nullptr, 0);
   if (result > 0 && AnybodyWaits() && IsTerminal(fd)) {
@@ -93,7 +97,9 @@ int HoldToSend(GuestThread& t, int fd, const msghdr& message) {
 // Control data travels with the first part.
 template <class Whole>
 ssize_t SendInParts(GuestThread* t, int fd, msghdr message, int flags, Whole whole) {
-  if (message.msg_iovlen > kMostBuffers || DontWait(flags)) return ToErrno(whole(fd));
+  if (message.msg_iovlen > kMostBuffers || DontWait(flags)) {
+    return ToErrno(AsProgram(*t, [&] { return whole(fd); }));
+  }
   Rest rest(message.msg_iov, message.msg_iovlen);
   return ToErrno(TransferAll(
       *t, fd, POLLOUT, SO_SNDTIMEO, rest,
@@ -114,6 +120,7 @@ template <class Whole>
 ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* may_post,
                 Whole whole) {
   if (t == nullptr) return ToErrno(whole(fd));
+  const OwnWork own(t);
   const bool was_in_call = t->in_call;
   const int receiver = HoldToSend(*t, fd, message);
   if (NotesActivity()) NoteDatagram(*t, fd, message.msg_name, message.msg_namelen);

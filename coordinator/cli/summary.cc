@@ -203,6 +203,7 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
         {"charged_ns", c.usage.charged_ns},
         {"priced_ns", c.usage.priced_ns},
         {"host_cpu_ns", c.usage.host_cpu_ns},
+        {"own_work_ns", c.usage.own_work_ns},
         {"stolen_ns", c.usage.stolen_ns},
         {"activations", c.usage.activations},
         {"overruns", c.usage.overruns},

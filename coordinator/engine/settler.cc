@@ -87,7 +87,7 @@ void Settler::Settle(Task& task) {
     run.shown = std::max(on_robot(page.last_shown_ns.load()), *run.noted);
   }
   const auto [progress, debt, exchange_overhead] = SettleRun(run);
-  metered.host_origin_ns += metered.OnHost(exchange_overhead).ns();
+  metered.NoteOwnWork(metered.OnHost(exchange_overhead));
   const VirtualDuration charged =
       std::max(VirtualDuration(), VirtualNs(reading.cpu_ns) - exchange_overhead);
   const VirtualDuration executed = std::max(VirtualDuration(), charged - task.charged);

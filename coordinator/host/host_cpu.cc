@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "coordinator/port/clocks.h"
+#include "coordinator/port/proc_files.h"
 #include "coordinator/port/waits.h"
 
 namespace tcs {
@@ -61,6 +62,7 @@ void HostCpu::OpenGate(shm::ThreadSlot& slot) {
 // From here on the TSC is the thread's.
 void HostCpu::Start(HostThread& thread, bool is_silent) {
   Woke();
+  thread.metered.own_work.TurnBegins();
   if (thread.slot_memory == nullptr) return;
   MeteredThread& metered = thread.metered;
   if (stop_tsc_ - thread.grant.base_tsc > kLongTicks) {
@@ -76,9 +78,10 @@ void HostCpu::Start(HostThread& thread, bool is_silent) {
 
 void HostCpu::StartBeside(HostThread& thread, std::uint64_t tsc) {
   AllowWay(thread);
-  MeterOf(thread).Begin(thread.metered, tsc, true, false);
+  thread.metered.own_work.TurnBegins();
   // The time that a switch takes there is not known, nor counted: the clock begins behind it. Nor
   // is anything to be learnt from it of switches here.
+  MeterOf(thread).Begin(thread.metered, tsc, false, false);
   thread.metered.unchecked_runs = {};
   thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = tsc;
 }
@@ -105,6 +108,7 @@ void HostCpu::Continue(HostThread& thread) {
 // undispatched it goes on with the clock that it has.
 void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock, shm::ClockPage* page) {
   const OnPage on_copy(thread.metered, page);
+  AllowOwnWork(thread);
   FollowOrigin(thread);
   // A thread beside may not have come to its gate yet: only at the gate does the kernel tell what
   // it has computed.
@@ -130,6 +134,18 @@ void HostCpu::AllowAttach(HostThread& thread) {
   metered.most_ways = std::max(metered.most_ways, metered.OnEither(shm::kMostAttachNs));
 }
 
+// By what the thread has run so far in its turn.
+void HostCpu::AllowOwnWork(HostThread& thread) const {
+  MeteredThread& metered = thread.metered;
+  const auto ticks = static_cast<std::int64_t>(stop_tsc_ - thread.grant.base_tsc);
+  const VirtualDuration ran =
+      VirtualNs(shm::MulQ32(std::max<std::int64_t>(0, ticks), thread.grant.ns_per_tick_q32));
+  metered.own_work.Allow(metered.OnHost(ran));
+  if (!metered.own_work.WantsEvidence()) return;
+  metered.own_work.Weigh(HostNs(ComputedBy(thread.tid).system_ns));
+  metered.own_work.Allow(metered.OnHost(ran));
+}
+
 // Without levels the thread may run, and move the origin on meanwhile: its page is left alone as
 // long as what the page says can be.
 void HostCpu::FollowOrigin(HostThread& thread) {
@@ -137,10 +153,12 @@ void HostCpu::FollowOrigin(HostThread& thread) {
   if (!metered.has_origin()) return;
   shm::ClockPage& page = *metered.page;
   const HostDuration said = HostNs(metered.OriginMovedOn(page));
-  const HostDuration moved = std::clamp(said, HostDuration(), metered.most_ways);
-  metered.page_origin_ns += moved.ns();
-  metered.host_origin_ns += moved.ns();
-  metered.most_ways -= moved;
+  const HostDuration most = metered.own_work.most() + metered.most_ways;
+  const HostDuration moved = std::clamp(said, HostDuration(), most);
+  const HostDuration own = std::min(moved, metered.own_work.most());
+  metered.NoteOwnWorkOnPage(moved);
+  metered.own_work.Believe(own);
+  metered.most_ways -= moved - own;
   if (moved != said) page.host_cpu_origin_ns = metered.page_origin_ns;
 }
 
@@ -157,7 +175,7 @@ void HostCpu::TakeOutWayToGate(HostThread& thread, VirtualDuration charged,
                                const Meter::CpuClock& clock) {
   constexpr HostDuration kMost = HostNs(shm::kMostExchangeNs);
   const HostDuration way = thread.metered.OnHost(Uncharged(thread, charged, clock));
-  if (way <= kMost) thread.metered.host_origin_ns += way.ns();
+  if (way <= kMost) thread.metered.NoteOwnWork(way);
 }
 
 shm::ClockReading HostCpu::ClockOf(const HostThread& thread) const {
@@ -169,6 +187,7 @@ HostDuration HostCpu::TimeToLook(HostThread& thread, ProgramTime horizon) {
 }
 
 Meter::Found HostCpu::Look(HostThread& thread, ProgramTime horizon, const Meter::CpuClock& clock) {
+  AllowOwnWork(thread);
   FollowOrigin(thread);
   return MeterOf(thread).Look(thread.metered, stop_tsc_, horizon, clock);
 }

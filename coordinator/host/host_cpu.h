@@ -88,8 +88,8 @@ class HostCpu {
                                   HostDuration asked, const Meter::CpuClock& clock);
   // For a thread that ran on though another one was dispatched.
   void Check(HostThread& thread, const Meter::CpuClock& clock);
-  // Accepts the amount by which the thread has moved the origin of its CPU clock on its ways out of
-  // gates: as much as these ways can have taken.
+  // Accepts the amount by which the thread has moved the origin of its CPU clock, for its ways out
+  // of gates and the shim's own work in calls: as much as these can have taken.
   static void FollowOrigin(HostThread& thread);
   // The thread goes out of a gate next, and may say what that took.
   static void AllowWay(HostThread& thread);
@@ -109,6 +109,7 @@ class HostCpu {
   void ChargeCall(HostThread& thread, VirtualDuration cost, shm::ClockPage* page);
 
  private:
+  void AllowOwnWork(HostThread& thread) const;
   Meter& MeterOf(const HostThread& thread) {
     return thread.metered.is_ideal ? static_cast<Meter&>(ideal_meter_) : *meter_;
   }

@@ -17,6 +17,11 @@ constexpr std::int64_t kSlackNs = 10'000'000;
 // believed.
 constexpr HostDuration kAuditAfter = HostDuration::Milliseconds(1);
 
+// Programs that hand work to each other are preempted once in each of their turns, so that all runs
+// between two looks at their CPU clocks are of both kinds, and tell of neither. So after this many
+// runs one of each kind is looked at by itself.
+constexpr std::uint32_t kRunsBetweenSingles = 32;
+
 // True if more time than the thread has run was taken out of its clock, as stolen: by its program,
 // or because the host's clocks do not agree.
 bool HasTakenTooMuch(const shm::ClockPage& page, std::uint64_t tsc) {
@@ -42,6 +47,7 @@ std::uint64_t MeasuredMeter::Begin(MeteredThread& thread, std::uint64_t tsc, boo
   thread.checked_tsc = tsc - thread.unchecked_ticks;
   thread.page->last_check_tsc.store(thread.checked_tsc, std::memory_order_relaxed);
   thread.unchecked_runs.Add(from_gate);
+  thread.Excuse(HostNs(static_cast<std::int64_t>(switch_costs_.ExcusedNs(from_gate))));
   return tsc + static_cast<std::uint64_t>(switch_costs_.Ns(from_gate) * rate_.ticks_per_ns);
 }
 
@@ -85,9 +91,7 @@ HostDuration MeasuredMeter::TakeOutUnaccounted(MeteredThread& thread,
        .shown_ns = thread.OnHost(PassedBetween(OwnTime(before.time_ns), OwnTime(shown_ns))).ns()}));
   if (stolen <= HostDuration()) return {};
   shm::RemoveUnaccounted(page, now, stolen.ns());
-  // The origin has been moved here, not by the thread.
-  thread.page_origin_ns += stolen.ns();
-  thread.host_origin_ns += stolen.ns();
+  thread.NoteOriginMoved(stolen);
   return stolen;
 }
 
@@ -111,6 +115,21 @@ void MeasuredMeter::CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const C
   if (shm::IsCheckDue(page, shm::ReadClockAt(page, tsc))) Check(thread, tsc, clock);
 }
 
+// True for a run that is the first since the last look at the thread's CPU clock, and that is
+// wanted by itself.
+bool MeasuredMeter::IsSingleToLookAt(const MeteredThread& thread) {
+  ++runs_since_singles_;
+  const UncheckedRuns& runs = thread.unchecked_runs;
+  const bool is_single =
+      runs.count == 1 && thread.page->last_check_tsc.load() == thread.checked_tsc;
+  const bool from_gate = runs.from_gate == 1;
+  if (!is_single || from_gate == last_single_from_gate_) return false;
+  if (from_gate && runs_since_singles_ < kRunsBetweenSingles) return false;
+  last_single_from_gate_ = from_gate;
+  runs_since_singles_ = 0;
+  return true;
+}
+
 // True if the thread has run so much without being asked by the coordinator.
 bool MeasuredMeter::IsAuditDue(const MeteredThread& thread) const {
   const auto most_ticks = static_cast<double>(kAuditAfter.ns()) * rate_.ticks_per_ns;
@@ -119,7 +138,8 @@ bool MeasuredMeter::IsAuditDue(const MeteredThread& thread) const {
 
 void MeasuredMeter::End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
   thread.unaudited_ticks += tsc - thread.page->base_tsc;
-  if (thread.is_watched || IsAuditDue(thread) || HasTakenTooMuch(*thread.page, tsc)) {
+  if (IsSingleToLookAt(thread) || thread.is_watched || IsAuditDue(thread) ||
+      HasTakenTooMuch(*thread.page, tsc)) {
     Check(thread, tsc, clock);
   } else {
     CheckIfDue(thread, tsc, clock);

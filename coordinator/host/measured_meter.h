@@ -38,12 +38,15 @@ class MeasuredMeter : public Meter {
   }
 
  private:
+  bool IsSingleToLookAt(const MeteredThread& thread);
   bool IsAuditDue(const MeteredThread& thread) const;
   void CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock);
 
   const TscRate rate_;
   PreemptionTimer timer_;
   SwitchCosts switch_costs_;
+  std::uint32_t runs_since_singles_ = 0;
+  bool last_single_from_gate_ = false;
 };
 
 }  // namespace tcs

@@ -16,6 +16,7 @@
 #include <optional>
 
 #include "coordinator/host/clock_grant.h"
+#include "coordinator/host/own_work.h"
 #include "coordinator/host/switch_costs.h"
 #include "shm/clock_page.h"
 #include "shm/layout.h"
@@ -48,6 +49,8 @@ struct MeteredThread {
   // The time that the thread's ways out of gates may still have taken: the thread says so itself,
   // and is not charged for it.
   HostDuration most_ways;
+  OwnWork own_work;              // the shim's, in the thread's calls
+  HostDuration own_work_in_all;  // that, and what the ways to the coordinator and back have taken
   std::uint64_t unchecked_ticks = 0;  // of TSC run since its CPU clock was last asked
   std::uint64_t unaudited_ticks = 0;  // the same, by the coordinator
   bool can_be_audited = true;         // in this turn: where the thread stops it stands still
@@ -72,6 +75,28 @@ struct MeteredThread {
   std::int64_t OriginMovedOn(const shm::ClockPage& its) const {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(its.host_cpu_origin_ns) -
                                      static_cast<std::uint64_t>(page_origin_ns));
+  }
+
+  // The origin has been moved on here, not by the thread.
+  void NoteOriginMoved(HostDuration by) {
+    page_origin_ns += by.ns();
+    host_origin_ns += by.ns();
+  }
+  // So much of what the thread has had by its CPU clock was the work of tcs, and is not charged.
+  // Its page is written anew before the thread runs, or the thread itself has moved the origin
+  // there.
+  void NoteOwnWork(HostDuration by) {
+    host_origin_ns += by.ns();
+    own_work_in_all += by;
+  }
+  void NoteOwnWorkOnPage(HostDuration by) {
+    page_origin_ns += by.ns();
+    NoteOwnWork(by);
+  }
+  // As NoteOwnWork, of a thread whose page has been written. The thread is stopped.
+  void Excuse(HostDuration by) {
+    page->host_cpu_origin_ns += by.ns();
+    NoteOwnWorkOnPage(by);
   }
 
   // The CPU clock is asked at the end of this turn, which is the thread's last.

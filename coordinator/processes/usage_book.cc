@@ -46,6 +46,7 @@ Usage UsageBook::UsageOf(const Process& process) const {
     usage += {.charged_ns = task->charged.ns(),
               .priced_ns = task->priced.ns(),
               .host_cpu_ns = HostCpuOf(*task),
+              .own_work_ns = task->metered.own_work_in_all.ns(),
               .stolen_ns = check_.StolenOf(*task),
               .activations = task->activations,
               .work = task->work};
@@ -68,6 +69,7 @@ void UsageBook::Keep(Task& ended) const {
   const Usage usage{
       .charged_ns = ended.charged.ns(),
       .priced_ns = ended.priced.ns(),
+      .own_work_ns = ended.metered.own_work_in_all.ns(),
       .stolen_ns = ended.slot < 0 ? 0 : check_.StolenOf(ended),
       .activations = ended.activations,
       .work = ended.work,

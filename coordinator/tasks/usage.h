@@ -17,7 +17,8 @@ struct OutsideUsage {
 struct Usage {
   std::int64_t charged_ns = 0;   // virtual
   std::int64_t priced_ns = 0;    // of that: work of which tcs spares programs (price_list.h)
-  std::int64_t host_cpu_ns = 0;  // by the kernel's CPU clocks
+  std::int64_t host_cpu_ns = 0;  // by the kernel's CPU clocks, less own_work_ns
+  std::int64_t own_work_ns = 0;  // the work of tcs: the shim's, and the ways to the coordinator
   std::int64_t stolen_ns = 0;
   std::int64_t activations = 0, overruns = 0;
   shm::WorkCounts work{};  // where it is counted
@@ -26,6 +27,7 @@ struct Usage {
     charged_ns += more.charged_ns;
     priced_ns += more.priced_ns;
     host_cpu_ns += more.host_cpu_ns;
+    own_work_ns += more.own_work_ns;
     stolen_ns += more.stolen_ns;
     activations += more.activations;
     overruns += more.overruns;

@@ -90,9 +90,39 @@ TEST_F(MeasuredMeterTest, TheCpuClockIsAskedOnlyAfterMuchHasPassed) {
   host_cpu_ns_ += 20 * kUs;
   End(kBegun + kTicksPerMs + 20 * kTicksPerUs);
   EXPECT_EQ(asked_, 1);
-  Dispatch(kBegun + 2 * kTicksPerMs);
-  End(kBegun + 2 * kTicksPerMs + 90 * kTicksPerUs);
-  EXPECT_EQ(asked_, 1);
+}
+
+// A thread whose turns begin at its gate and after a preemption by turns: between two looks at its
+// CPU clock it has both. The first takes 5 us by the TSC that the thread has not had, the other 2.
+TEST_F(MeasuredMeterTest, SingleRunsTellOfSwitchesWhereRunsAreOfBothKinds) {
+  std::uint64_t tsc = kBegun;
+  for (int i = 0; i < 20'000; ++i, tsc += kTicksPerMs) {
+    const bool from_gate = i % 2 == 0;
+    Dispatch(tsc, from_gate);
+    host_cpu_ns_ += 8 * kUs;
+    End(tsc + (from_gate ? 13 : 10) * kTicksPerUs);
+  }
+  EXPECT_NEAR(static_cast<double>(meter_.Begin(thread_, tsc, true, false) - tsc), 5 * kTicksPerUs,
+              50);
+  EXPECT_NEAR(static_cast<double>(meter_.Begin(thread_, tsc, false, false) - tsc), 2 * kTicksPerUs,
+              50);
+  EXPECT_LT(asked_, 20'000 / 5);
+}
+
+// The thread's CPU clock counts what it does on its way to its gate, after its turn: 3 us.
+TEST_F(MeasuredMeterTest, WaysToTheGateAreNotCharged) {
+  std::uint64_t tsc = kBegun;
+  for (int i = 0; i < 400; ++i, tsc += kTicksPerMs) {
+    Dispatch(tsc, true);
+    host_cpu_ns_ += 203 * kUs;
+    End(tsc + 200 * kTicksPerUs);
+  }
+  const std::int64_t charged_ns = charged_ns_;
+  Dispatch(tsc, true);
+  host_cpu_ns_ += 203 * kUs;
+  End(tsc + 200 * kTicksPerUs);
+  EXPECT_NEAR(static_cast<double>(charged_ns_ - charged_ns), 200 * kUs, 50);
+  EXPECT_EQ(page_.host_cpu_origin_ns, thread_.page_origin_ns);
 }
 
 // Each run takes 200 us by the TSC, the way there and back included, and the thread has had 195.

@@ -46,10 +46,19 @@ TEST(SwitchCosts, ATheftOfSecondsIsNoSwitch) {
   EXPECT_EQ(costs.Ns(false), SwitchCosts::kMostNs);
 }
 
-TEST(SwitchCosts, AreNeverNegative) {
+TEST(SwitchCosts, OfPreemptionsAreNeverNegative) {
   SwitchCosts costs;
   costs.Learn(kPreempted, -4e9);
   EXPECT_EQ(costs.Ns(false), 0);
+  EXPECT_EQ(costs.ExcusedNs(false), 0);
+}
+
+// The CPU clock counts more than the TSC: the thread went to its gate when its turn was over.
+TEST(SwitchCosts, WaysToTheGateAreExcused) {
+  SwitchCosts costs;
+  for (int i = 0; i < 300; ++i) costs.Learn(kFromGate, 4 * (costs.ExcusedNs(true) - 1'500));
+  EXPECT_NEAR(costs.ExcusedNs(true), 1'500, 1);
+  EXPECT_EQ(costs.Ns(true), 0);
 }
 
 TEST(UncheckedRuns, CountsThoseFromTheGate) {

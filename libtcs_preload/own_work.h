@@ -1,0 +1,98 @@
+// The time that the shim takes for a call beyond the system call that the program has asked for: to
+// ask the kernel what a descriptor is, to see whether the thread may go on, to tell the
+// coordinator. Natively nothing of that happens, so it is neither the thread's time nor its charge.
+//
+// Where set costs are charged nothing is reckoned. The coordinator believes at most a share of what
+// a thread has run (HostCpu::FollowOrigin): a program may write to the memory where this is told.
+// Async-signal-safe; no system call.
+#pragma once
+
+#include <errno.h>
+
+#include <cstdint>
+
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/non_blocking.h"
+#include "shm/clock_page.h"
+#include "shm/tsc.h"
+
+namespace tcs::preload {
+
+// Takes out what the shim has worked since it was last taken out. The shim works on.
+void TakeOutOwnWork(GuestThread& thread);
+
+// What is between the two is the program's.
+inline void EndOwnWork(GuestThread& thread) {
+  if (thread.own_work_tsc == 0) return;
+  TakeOutOwnWork(thread);
+  thread.own_work_tsc = 0;
+}
+inline void BeginOwnWork(GuestThread& thread) {
+  if (thread.slot->clock.ns_per_tick_q32 != 0) thread.own_work_tsc = shm::ReadTsc();
+}
+
+// From here to the end of the scope the shim works for a call of the thread's, but for what is made
+// AsProgram. In a scope within, nothing changes. Null: the call is let through.
+class OwnWork {
+ public:
+  explicit OwnWork(GuestThread* thread)
+      : thread_(thread != nullptr && thread->own_work_tsc == 0 ? thread : nullptr) {
+    if (thread_ != nullptr) BeginOwnWork(*thread_);
+  }
+  // A child by fork has not begun it.
+  ~OwnWork() {
+    if (thread_ != nullptr && thread_->slot != nullptr) EndOwnWork(*thread_);
+  }
+  OwnWork(const OwnWork&) = delete;
+  OwnWork& operator=(const OwnWork&) = delete;
+
+ private:
+  GuestThread* const thread_;
+};
+
+// Makes the system call that the program has asked for: its time is the program's, unless it has
+// found only that it would have to wait, or that the descriptor has no form that cannot. Then the
+// call was a look of the shim's.
+template <class Call>
+auto AsProgram(GuestThread& thread, Call call) {
+  if (thread.own_work_tsc == 0) return call();
+  TakeOutOwnWork(thread);
+  const std::uint64_t begun_tsc = shm::ReadTsc();
+  // Goes to the next part of the shim's work.
+  const std::uint64_t taking_out = begun_tsc - thread.own_work_tsc;
+  thread.own_work_tsc = 0;
+  const std::uint32_t handlers = thread.handlers;
+  const auto result = call();
+  const std::uint64_t ended_tsc = shm::ReadTsc();
+  const bool was_look = (result == -EAGAIN || result == -EOPNOTSUPP || result == kNoForm) &&
+                        thread.handlers == handlers;
+  thread.look_ticks = was_look ? ended_tsc - begun_tsc : 0;
+  thread.own_work_tsc = (was_look ? begun_tsc : ended_tsc) - taking_out;
+  return result;
+}
+
+// The last look has been the program's own call after all: its answer is the program's.
+inline void AnswerByLook(GuestThread& thread) {
+  if (thread.own_work_tsc != 0) thread.own_work_tsc += thread.look_ticks;
+  thread.look_ticks = 0;
+}
+
+// A handler of the program's runs in the middle of a call: its time is the program's.
+class HandlersWork {
+ public:
+  explicit HandlersWork(GuestThread& thread)
+      : thread_(thread), interrupts_own_work_(thread.own_work_tsc != 0) {
+    if (interrupts_own_work_) EndOwnWork(thread);
+  }
+  ~HandlersWork() {
+    if (interrupts_own_work_) BeginOwnWork(thread_);
+  }
+  HandlersWork(const HandlersWork&) = delete;
+  HandlersWork& operator=(const HandlersWork&) = delete;
+
+ private:
+  GuestThread& thread_;
+  const bool interrupts_own_work_;
+};
+
+}  // namespace tcs::preload
