@@ -43,8 +43,9 @@ struct GuestThread {
   std::uint32_t posting_socket = 0;
   std::uint64_t own_work_tsc =
       0;  // since then the shim works for a call (own_work.h); 0: it does not
-  std::uint64_t look_ticks = 0;   // what the shim's last look has taken
-  std::int64_t cpu_shown_ns = 0;  // the thread's charged processor time as it was last shown
+  std::uint64_t look_ticks = 0;      // what the shim's last look has taken
+  std::uint64_t own_work_ticks = 0;  // in all
+  std::int64_t cpu_shown_ns = 0;     // the thread's charged processor time as it was last shown
   // Locks taken in a row, since the value by which allocation_cost.cc tells a row was `locks_at`.
   int locks = 0;
   std::int64_t locks_at = 0;

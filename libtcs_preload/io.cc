@@ -55,7 +55,7 @@ ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
   msghdr part_of = message;
   bool first = true;
   const long done = TransferAll(
-      *t, fd, POLLIN, SO_RCVTIMEO, rest,
+      *t, fd, POLLIN, SO_RCVTIMEO, rest, 0,
       [&](int from, const iovec* part, std::size_t n) -> long {
         part_of.msg_iov = const_cast<iovec*>(part);
         part_of.msg_iovlen = n;
@@ -107,7 +107,8 @@ ssize_t ReadInto(int fd, const iovec* iov, int count, bool is_beyond, Call call)
     const long answer = try_it(from);
     return answer == kNoForm ? TryReadWithoutForm(from, iov, count) : answer;
   };
-  return ReadLike(fd, {}, Forms{look, try_it, whole});
+  const std::uint64_t form_ticks = g_header != nullptr ? g_header->read_form_ticks : 0;
+  return ReadLike(fd, {}, Forms{look, try_it, whole, form_ticks});
 }
 
 }  // namespace

@@ -42,14 +42,16 @@ struct Reads {
 // The forms of a call that reads a descriptor. `look`: the answer that the kernel gives without
 // waiting although nothing is there, or -EAGAIN. `try_it`: the kernel's answer in a form that
 // cannot wait: -EAGAIN, or kNoForm. `call`: the call as the program has made it.
+// `try_ticks`: what `try_it` takes more than `call` where something is there.
 template <class Look, class Try, class Call>
 struct Forms {
   Look look;
   Try try_it;
   Call call;
+  std::uint64_t try_ticks = 0;
 };
 template <class Look, class Try, class Call>
-Forms(Look, Try, Call) -> Forms<Look, Try, Call>;
+Forms(Look, Try, Call, std::uint64_t = 0) -> Forms<Look, Try, Call>;
 
 // -1: the descriptor is no socket.
 inline int TypeOfSocket(int fd) {
@@ -114,7 +116,9 @@ class Taker {
   // -EAGAIN: nothing is there.
   long TryIt(int fd) {
     return Take(fd, [this](int from) {
-      const long result = has_form_ ? AsProgram(t_, [&] { return forms_.try_it(from); }) : kNoForm;
+      const long result = has_form_ ? AsProgram(
+                                          t_, [&] { return forms_.try_it(from); }, forms_.try_ticks)
+                                    : kNoForm;
       has_form_ = result != kNoForm;
       if (has_form_) return result;
       return PollNow(from, POLLIN) ? MakeOn(from) : -EAGAIN;

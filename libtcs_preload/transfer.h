@@ -59,12 +59,13 @@ class Rest {
 };
 
 // `part(fd, iov, count)` does what it can at once (-EAGAIN: nothing), the rest is waited for,
-// unless the descriptor is not to wait, which is asked only then: mostly all is done at once. A
-// part that the descriptor does not have (-EOPNOTSUPP), or that fails although the descriptor is
-// ready, is left to `whole(fd)`. Returns what the call returns to its caller, or -errno.
+// unless the descriptor is not to wait, which is asked only then: mostly all is done at once.
+// `part` takes `form_ticks` more than the call that the program has made (AsProgram). A part that
+// the descriptor does not have (-EOPNOTSUPP), or that fails although the descriptor is ready, is
+// left to `whole(fd)`. Returns what the call returns to its caller, or -errno.
 template <class Part, class Whole>
 long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, Rest& rest,
-                 Part part, Whole whole) {
+                 std::uint64_t form_ticks, Part part, Whole whole) {
   const int saved = errno;
   CallFile file(thread, fd);
   std::int64_t deadline_ns = -1;
@@ -72,7 +73,8 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
   for (long done = 0;;) {
     std::size_t count = 0;
     const iovec* iov = rest.Next(&count);
-    const long n = AsProgram(thread, [&] { return part(file.fd(), iov, count); });
+    const long n = AsProgram(
+        thread, [&] { return part(file.fd(), iov, count); }, form_ticks);
     if (n > 0) {
       done += n;
       rest.Use(static_cast<std::size_t>(n));

@@ -71,9 +71,9 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   Rest rest(iov, AreSound(iov, count) ? count : 0);
   if (NotesActivity()) NoteDatagram(*t, fd, nullptr, 0);
   const OutsideAsk ask = BeginAsk(fd);
-  const long result = rest.bytes() == 0
-                          ? at_once()
-                          : TransferAll(*t, fd, POLLOUT, SO_SNDTIMEO, rest, WritePart, whole);
+  const long result = rest.bytes() == 0 ? at_once()
+                                        : TransferAll(*t, fd, POLLOUT, SO_SNDTIMEO, rest,
+                                                      g_header->write_form_ticks, WritePart, whole);
   if (result < 0 && NotesActivity()) TakeBackDatagram(*t, fd, nullptr, 0);
   if (result > 0 && AnybodyWaits() && IsTerminal(fd)) {
     TellChanged(*t, tcs::shm::KernelObjectKind::kTerminals, 0);
@@ -102,7 +102,7 @@ ssize_t SendInParts(GuestThread* t, int fd, msghdr message, int flags, Whole who
   }
   Rest rest(message.msg_iov, message.msg_iovlen);
   return ToErrno(TransferAll(
-      *t, fd, POLLOUT, SO_SNDTIMEO, rest,
+      *t, fd, POLLOUT, SO_SNDTIMEO, rest, 0,
       [&](int to, const iovec* part, std::size_t n) {
         message.msg_iov = const_cast<iovec*>(part);
         message.msg_iovlen = n;

@@ -27,6 +27,7 @@
 #include "coordinator/os/shared_memory.h"
 #include "coordinator/os/spawning.h"
 #include "coordinator/os/tsc_facts.h"
+#include "coordinator/port/call_times.h"
 #include "coordinator/port/clocks.h"
 #include "coordinator/port/levels.h"
 #include "coordinator/port/traps.h"
@@ -194,6 +195,12 @@ std::string Setup::PrepareMemory() {
       run_.options.date_ns.value_or(run_.IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME));
   run_.header->coordinator_pid = getpid();
   run_.header->counter_ticks_per_ns_q32 = CounterRate();
+  if (!run_.IsFixed()) {
+    const CallTimes times = MeasureCalls();
+    run_.header->plain_call_ticks = times.plain;
+    run_.header->write_form_ticks = times.write_form;
+    run_.header->read_form_ticks = times.read_form;
+  }
   run_.header->is_unprivileged = run_.is_unprivileged ? 1 : 0;
   run_.header->preempts = run_.SendsToGates() || SpinWaits::AsksThreads(run_) ? 1 : 0;
   run_.header->has_brokers = run_.has_brokers ? 1 : 0;

@@ -62,7 +62,7 @@ void HostCpu::OpenGate(shm::ThreadSlot& slot) {
 // From here on the TSC is the thread's.
 void HostCpu::Start(HostThread& thread, bool is_silent) {
   Woke();
-  thread.metered.own_work.TurnBegins();
+  thread.metered.TurnBegins();
   if (thread.slot_memory == nullptr) return;
   MeteredThread& metered = thread.metered;
   if (stop_tsc_ - thread.grant.base_tsc > kLongTicks) {
@@ -78,7 +78,7 @@ void HostCpu::Start(HostThread& thread, bool is_silent) {
 
 void HostCpu::StartBeside(HostThread& thread, std::uint64_t tsc) {
   AllowWay(thread);
-  thread.metered.own_work.TurnBegins();
+  thread.metered.TurnBegins();
   // The time that a switch takes there is not known, nor counted: the clock begins behind it. Nor
   // is anything to be learnt from it of switches here.
   MeterOf(thread).Begin(thread.metered, tsc, false, false);
@@ -108,7 +108,7 @@ void HostCpu::Continue(HostThread& thread) {
 // undispatched it goes on with the clock that it has.
 void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock, shm::ClockPage* page) {
   const OnPage on_copy(thread.metered, page);
-  AllowOwnWork(thread);
+  AllowOwnWork(thread, clock);
   FollowOrigin(thread);
   // A thread beside may not have come to its gate yet: only at the gate does the kernel tell what
   // it has computed.
@@ -134,16 +134,24 @@ void HostCpu::AllowAttach(HostThread& thread) {
   metered.most_ways = std::max(metered.most_ways, metered.OnEither(shm::kMostAttachNs));
 }
 
-// By what the thread has run so far in its turn.
-void HostCpu::AllowOwnWork(HostThread& thread) const {
-  MeteredThread& metered = thread.metered;
+// Where others share the processor the TSC counts their time, too.
+HostDuration HostCpu::RanInTurn(const HostThread& thread, const Meter::CpuClock& clock) const {
+  const MeteredThread& metered = thread.metered;
   const auto ticks = static_cast<std::int64_t>(stop_tsc_ - thread.grant.base_tsc);
-  const VirtualDuration ran =
-      VirtualNs(shm::MulQ32(std::max<std::int64_t>(0, ticks), thread.grant.ns_per_tick_q32));
-  metered.own_work.Allow(metered.OnHost(ran));
-  if (!metered.own_work.WantsEvidence()) return;
-  metered.own_work.Weigh(HostNs(ComputedBy(thread.tid).system_ns));
-  metered.own_work.Allow(metered.OnHost(ran));
+  const HostDuration by_tsc = metered.OnHost(
+      VirtualNs(shm::MulQ32(std::max<std::int64_t>(0, ticks), thread.grant.ns_per_tick_q32)));
+  if (stands_still() || by_tsc == HostDuration()) return by_tsc;
+  const std::int64_t cpu_ns = metered.turn_cpu_ns < 0 ? -1 : clock();
+  return cpu_ns < 0 ? HostDuration() : std::min(by_tsc, HostNs(cpu_ns - metered.turn_cpu_ns));
+}
+
+void HostCpu::AllowOwnWork(HostThread& thread, const Meter::CpuClock& clock) const {
+  OwnWork& work = thread.metered.own_work;
+  const HostDuration ran = RanInTurn(thread, clock);
+  work.Allow(ran);
+  if (!work.WantsEvidence()) return;
+  work.Weigh(HostNs(ComputedBy(thread.tid).system_ns));
+  work.Allow(ran);
 }
 
 // Without levels the thread may run, and move the origin on meanwhile: its page is left alone as
@@ -187,7 +195,7 @@ HostDuration HostCpu::TimeToLook(HostThread& thread, ProgramTime horizon) {
 }
 
 Meter::Found HostCpu::Look(HostThread& thread, ProgramTime horizon, const Meter::CpuClock& clock) {
-  AllowOwnWork(thread);
+  AllowOwnWork(thread, clock);
   FollowOrigin(thread);
   return MeterOf(thread).Look(thread.metered, stop_tsc_, horizon, clock);
 }

@@ -109,7 +109,8 @@ class HostCpu {
   void ChargeCall(HostThread& thread, VirtualDuration cost, shm::ClockPage* page);
 
  private:
-  void AllowOwnWork(HostThread& thread) const;
+  HostDuration RanInTurn(const HostThread& thread, const Meter::CpuClock& clock) const;
+  void AllowOwnWork(HostThread& thread, const Meter::CpuClock& clock) const;
   Meter& MeterOf(const HostThread& thread) {
     return thread.metered.is_ideal ? static_cast<Meter&>(ideal_meter_) : *meter_;
   }

@@ -41,6 +41,7 @@ struct MeteredThread {
   std::int64_t host_origin_ns = kNoOrigin;
   std::int64_t page_origin_ns = 0;  // the same, as the page says it
   std::int64_t known_cpu_ns = -1;   // the CPU clock's last value (shared_cpu_meter.h)
+  std::int64_t turn_cpu_ns = -1;    // that when the turn began
   HostDuration least_sleep;         // before the next look at the thread (likewise)
   HostDuration longest_run = HostDuration::Milliseconds(10);  // of late
   // Other threads look at what this thread does in short steps: its CPU clock is asked after each
@@ -99,6 +100,10 @@ struct MeteredThread {
     NoteOwnWorkOnPage(by);
   }
 
+  void TurnBegins() {
+    own_work.TurnBegins();
+    turn_cpu_ns = known_cpu_ns;
+  }
   // The CPU clock is asked at the end of this turn, which is the thread's last.
   void AuditAtEnd() { unaudited_ticks = std::uint64_t{1} << 62; }
 

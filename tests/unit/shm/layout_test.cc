@@ -24,6 +24,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(RunHeader, notes_activity), 84u);
   EXPECT_EQ(offsetof(RunHeader, turns_beside), 88u);
   EXPECT_EQ(offsetof(RunHeader, counter_ticks_per_ns_q32), 96u);
+  EXPECT_EQ(offsetof(RunHeader, plain_call_ticks), 104u);
   EXPECT_EQ(offsetof(ClockPage, horizon_ns), 32u);
   EXPECT_EQ(offsetof(ClockPage, waited_adjust), 72u);
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);
