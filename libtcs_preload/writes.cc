@@ -127,7 +127,9 @@ ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* 
   const OutsideAsk ask = BeginAsk(fd);
   long posted = 0;
   ssize_t sent;
-  if (*may_post && Post(*t, fd, receiver, message, flags, &posted)) {
+  // What posts is the program's call: no other is made for it.
+  const auto post = [&] { return Post(*t, fd, receiver, message, flags, &posted) ? 1 : 0; };
+  if (*may_post && AsProgram(*t, post) != 0) {
     t->in_call = was_in_call;  // nobody has seen the message yet
     sent = ToErrno(posted);
   } else {

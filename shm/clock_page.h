@@ -180,30 +180,32 @@ inline std::int64_t HostNsOf(const ClockPage& page, std::int64_t ns) {
                                    page.ns_per_host_ns_q32);
 }
 
+// `ns` by the host's clock or by the robot's: whichever is longer. The work of tcs takes as long on
+// a slow computer as on a fast one.
+inline std::int64_t OnEither(const ClockPage& page, std::int64_t ns) {
+  const std::int64_t on_robot = MulQ32(ns, page.ns_per_host_ns_q32);
+  return on_robot > ns ? on_robot : ns;
+}
+
 // Takes out the last `ns` before the reading. The exchange with the coordinator took them, so they
 // are neither time nor charge of the thread. Nothing is taken out if `ns` is more than `most_ns`: a
-// handler has run, or other threads have.
+// handler has run, or other threads have. `most_ns` is OnEither.
 inline void TakeOut(ClockPage& page, const ClockReading& r, std::int64_t ns, std::int64_t most_ns) {
-  if (page.ns_per_tick_q32 == 0 || ns <= 0 || ns > most_ns) return;
+  if (page.ns_per_tick_q32 == 0 || ns <= 0 || ns > OnEither(page, most_ns)) return;
   std::uint64_t expected = r.executed_word;
   const std::uint64_t desired = PackAdjust(r.executed_word, AdjustValue(r.executed_word) - ns);
   if (!page.executed_adjust.compare_exchange_strong(expected, desired)) return;
   page.host_cpu_origin_ns += HostNsOf(page, ns);
 }
 
-// As TakeOut, for the time executed since the dispatch, which the way out of the gate takes.
-inline void TakeOutGate(ClockPage& page, const ClockReading& r, std::int64_t most_ns) {
-  TakeOut(page, r, r.cpu_ns - page.base_cpu_ns, most_ns);
-}
-
 // Where others share the processor as ordinary tasks, the thread's clock goes on when the thread
 // leaves its gate, from where its charge was `cpu_ns`. The time that its CPU clock has counted
-// since is the way to the gate and out of it, as in TakeOutGate. At the reading the CPU clock says
-// `host_cpu_ns`.
+// since is the way to the gate and out of it, and is taken out as by TakeOut. At the reading the
+// CPU clock says `host_cpu_ns`.
 inline void LeaveGate(ClockPage& page, const ClockReading& r, std::int64_t cpu_ns,
                       std::int64_t host_cpu_ns, std::int64_t most_ns) {
   const std::int64_t counted_ns = CpuTimeFromHostClock(page, host_cpu_ns) - cpu_ns;
-  const bool is_ours = counted_ns > 0 && counted_ns <= most_ns;
+  const bool is_ours = counted_ns > 0 && counted_ns <= OnEither(page, most_ns);
   const std::int64_t wrong_ns = r.cpu_ns - (is_ours ? cpu_ns : cpu_ns + counted_ns);
   std::uint64_t expected = r.executed_word;
   const std::uint64_t desired =
