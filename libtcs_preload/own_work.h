@@ -2,8 +2,8 @@
 // ask the kernel what a descriptor is, to see whether the thread may go on, to tell the
 // coordinator. Natively nothing of that happens, so it is neither the thread's time nor its charge.
 //
-// Where set costs are charged nothing is reckoned. The coordinator believes at most a share of what
-// a thread has run (HostCpu::FollowOrigin): a program may write to the memory where this is told.
+// Where set costs are charged nothing is reckoned. The coordinator believes only what can be
+// (coordinator/host/own_work.h): a program may write to the memory where this is told.
 // Async-signal-safe; no system call.
 #pragma once
 

@@ -91,9 +91,10 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
     may_wait = true;
     const bool is_hidden = (events & POLLIN) != 0 && IsHidden(thread, OutsideOf(file.fd()));
     if ((!can_part || done == 0) && !is_hidden && PollNow(file.fd(), events)) {
-      if (!can_part) return AsProgram(thread, [&] { return whole(file.fd()); });
-      // The call waits for what cannot be polled: room in the queue of the socket that it sends to.
-      return WaitInKernel(thread, true, [&] { return whole(file.fd()); });
+      const auto all = [&] { return AsProgram(thread, [&] { return whole(file.fd()); }); };
+      // Or the call waits for what cannot be polled: room in the queue of the socket that it sends
+      // to.
+      return can_part ? WaitInKernel(thread, true, all) : all();
     }
     if (is_last) return done > 0 ? done : -EAGAIN;
     if (deadline_ns < 0) {

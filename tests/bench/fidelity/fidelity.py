@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Calls of the kernel and whole DDS systems natively, in real time and on one processor, beside the same binaries under tcs on
+"""Calls of the kernel, programs and whole DDS systems natively, in real time and on one processor, beside the same binaries under tcs on
 one core.
 
-usage: fidelity.py TCSIM NODE CALLS [--rounds N] [--rows calls|samples|pipeline] [--quick] [--json]
+usage: fidelity.py TCSIM NODE CALLS [--rounds N] [--rows calls|programs|samples|pipeline] [--quick] [--json]
 
 Natively over the loopback interface; under tcs as by default, measured and under set costs. In turns: each row natively,
 then measured, so many rounds; once under set costs, which are the same in each round, and once without prices. A native run
@@ -120,6 +120,47 @@ class Calls:
             print(f"| {name} | {middle:,.0f} ({low:,.0f}–{high:,.0f}) | {ours:,.0f} | {ours / middle:.2f} | {without:,.0f} | {without / middle:.2f} |")
 
 
+class Programs:
+    """What whole programs of Debian take, by a shell's clock."""
+
+    def __init__(self, data, source, quick):
+        self.rows = {"a shell that starts 300 programs": "i=0; while [ $i -lt 300 ]; do /bin/true; i=$((i + 1)); done",
+                     "three programs at a pipe": f"cat {data} | gzip -1 | wc -c",
+                     "xz": f"xz -1 -T1 -c {data} | wc -c",
+                     "gcc": f"gcc -O2 -c {source} -o /dev/null",
+                     "python": "python3 -c 'print(sum(i * i for i in range(2000000)))'",
+                     "tar of the headers of C++": "tar -cf - -C /usr/include/c++ . | wc -c"}
+        if quick:
+            self.rows = {"python": self.rows["python"]}
+
+    @staticmethod
+    def commands(script):
+        return [["sh", "-c", f'begun=$(date +%s%N); {script} >&2; ended=$(date +%s%N); echo $((ended - begun))']]
+
+    @staticmethod
+    def print(found):
+        """By name, by kind: nanoseconds."""
+        print("\nIn ms: native · measured · ratio · measured without real-time priority · ratio\n")
+        print("| program | native | measured | ratio | without rights | ratio |\n|" + "---|" * 6)
+        for name, by in found.items():
+            middle, ours, without = (statistics.median(by[kind]) for kind in ("native", "measured", "unprivileged"))
+            native = text_of([value / 1e6 for value in by["native"]])
+            print(f"| {name} | {native} | {ours / 1e6:,.0f} | {ours / middle:.2f} | {without / 1e6:,.0f} | {without / middle:.2f} |")
+
+
+def measure_programs(tcsim, programs, rounds, processor):
+    found = {}
+    for name, script in programs.rows.items():
+        by = found[name] = {"native": [], "measured": [], "unprivileged": []}
+        commands = programs.commands(script)
+        natively(commands, processor)  # what it reads is in memory from then on
+        for _ in range(rounds):
+            by["native"].append(int(natively(commands, processor)[0]))
+            by["measured"].append(int(under_tcs(tcsim, commands, "measured")[0]))
+            by["unprivileged"].append(int(under_tcs(tcsim, commands, "measured", without_rights=True)[0]))
+    return found
+
+
 def text_of(values):
     """The median, and the range."""
     short = (lambda x: f"{x:.3f}") if max(values) <= 1 else (lambda x: f"{x:,.0f}")
@@ -145,7 +186,7 @@ def main():
     parser.add_argument("node")
     parser.add_argument("calls")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--rows", choices=("calls", "samples", "pipeline"), help="these alone")
+    parser.add_argument("--rows", choices=("calls", "programs", "samples", "pipeline"), help="these alone")
     parser.add_argument("--quick", action="store_true", help="one round of few rows: that each can be measured")
     parser.add_argument("--json", action="store_true")
     given = parser.parse_args()
@@ -167,6 +208,11 @@ def main():
         found["calls"] = measure_calls(given.tcsim, Calls(os.path.abspath(given.calls), 3 if given.quick else 11), given.rounds, processor)
         if not given.json:
             Calls.print(**found["calls"])
+    if given.rows in (None, "programs"):
+        source = os.path.join(os.path.dirname(os.path.abspath(__file__)), "calls.c")
+        found["programs"] = measure_programs(given.tcsim, Programs(os.path.abspath(given.tcsim), source, given.quick), given.rounds, processor)
+        if not given.json:
+            Programs.print(found["programs"])
     rows = [row for row in rows if given.rows is None or isinstance(row, kinds.get(given.rows, ()))]
     for row in rows:
         by = found[row.name] = {"native": [], "measured": []}
