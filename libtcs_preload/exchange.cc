@@ -338,8 +338,7 @@ struct Interrupted {
 // interrupted another exchange.
 Reply ExchangeAnywhere(GuestThread& thread, const Request& request) {
   Reply reply;
-  const bool is_own_work = thread.own_work_tsc != 0;
-  EndOwnWork(thread);
+  const PausedOwnWork paused(thread);
   if (thread.depth++ == 0) {
     reply = ExchangeOnce(thread, request);
   } else {
@@ -348,7 +347,6 @@ Reply ExchangeAnywhere(GuestThread& thread, const Request& request) {
     outer.PutBack(*thread.slot);
   }
   --thread.depth;
-  if (is_own_work) BeginOwnWork(thread);
   return reply;
 }
 

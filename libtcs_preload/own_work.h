@@ -85,22 +85,24 @@ inline void AnswerByLook(GuestThread& thread) {
   thread.look_ticks = 0;
 }
 
-// A handler of the program's runs in the middle of a call: its time is the program's.
-class HandlersWork {
+// From here to the end of the scope the shim does not work for the call, if it did: a handler of
+// the program's runs in the midst of it, whose time is the program's; or the thread is in an
+// exchange, which is taken out otherwise (exchange.cc).
+class PausedOwnWork {
  public:
-  explicit HandlersWork(GuestThread& thread)
-      : thread_(thread), interrupts_own_work_(thread.own_work_tsc != 0) {
-    if (interrupts_own_work_) EndOwnWork(thread);
+  explicit PausedOwnWork(GuestThread& thread)
+      : thread_(thread), was_under_way_(thread.own_work_tsc != 0) {
+    EndOwnWork(thread);
   }
-  ~HandlersWork() {
-    if (interrupts_own_work_) BeginOwnWork(thread_);
+  ~PausedOwnWork() {
+    if (was_under_way_) BeginOwnWork(thread_);
   }
-  HandlersWork(const HandlersWork&) = delete;
-  HandlersWork& operator=(const HandlersWork&) = delete;
+  PausedOwnWork(const PausedOwnWork&) = delete;
+  PausedOwnWork& operator=(const PausedOwnWork&) = delete;
 
  private:
   GuestThread& thread_;
-  const bool interrupts_own_work_;
+  const bool was_under_way_;
 };
 
 }  // namespace tcs::preload

@@ -70,7 +70,7 @@ void OnSignal(int signal, siginfo_t* info, void* context) {
     if (may_fail && (!call.IsHandedOver() || HasWaited())) call.FailWithEintr();
   }
   if (thread.depth > 0) AwaitTurnOfHandler(thread);
-  const HandlersWork work(thread);
+  const PausedOwnWork paused(thread);
   wanted.handler()(signal, info, context);
 }
 

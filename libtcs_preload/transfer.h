@@ -70,6 +70,7 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
   CallFile file(thread, fd);
   std::int64_t deadline_ns = -1;
   bool may_wait = false, is_last = false;  // last: the time is over
+  const auto all = [&] { return AsProgram(thread, [&] { return whole(file.fd()); }); };
   for (long done = 0;;) {
     std::size_t count = 0;
     const iovec* iov = rest.Next(&count);
@@ -84,14 +85,13 @@ long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, 
     const bool can_part = n != -EOPNOTSUPP || done > 0;
     if (n != -EAGAIN && can_part) return done > 0 ? done : n;
     if (!may_wait && IsNonBlocking(file.fd())) {
-      if (!can_part) return AsProgram(thread, [&] { return whole(file.fd()); });
+      if (!can_part) return all();
       AnswerByLook(thread);
       return done > 0 ? done : -EAGAIN;
     }
     may_wait = true;
     const bool is_hidden = (events & POLLIN) != 0 && IsHidden(thread, OutsideOf(file.fd()));
     if ((!can_part || done == 0) && !is_hidden && PollNow(file.fd(), events)) {
-      const auto all = [&] { return AsProgram(thread, [&] { return whole(file.fd()); }); };
       // Or the call waits for what cannot be polled: room in the queue of the socket that it sends
       // to.
       return can_part ? WaitInKernel(thread, true, all) : all();

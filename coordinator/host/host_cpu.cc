@@ -1,6 +1,7 @@
 #include "coordinator/host/host_cpu.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "coordinator/port/clocks.h"
@@ -33,6 +34,22 @@ class OnPage {
  private:
   MeteredThread& thread_;
   shm::ClockPage* const own_;
+};
+
+// A thread's CPU clock, asked at most once: each time is a system call.
+class AskedOnce {
+ public:
+  explicit AskedOnce(const Meter::CpuClock& clock) : clock_(clock) {}
+  Meter::CpuClock Clock() {
+    return [this] {
+      if (!ns_.has_value()) ns_ = clock_();
+      return *ns_;
+    };
+  }
+
+ private:
+  const Meter::CpuClock& clock_;
+  std::optional<std::int64_t> ns_;
 };
 
 }  // namespace
@@ -108,14 +125,16 @@ void HostCpu::Continue(HostThread& thread) {
 // undispatched it goes on with the clock that it has.
 void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock, shm::ClockPage* page) {
   const OnPage on_copy(thread.metered, page);
-  AllowOwnWork(thread, clock);
+  AskedOnce asked(clock);
+  const Meter::CpuClock once = asked.Clock();
+  AllowOwnWork(thread, once);
   FollowOrigin(thread);
   // A thread beside may not have come to its gate yet: only at the gate does the kernel tell what
   // it has computed.
   thread.metered.can_be_audited = !thread.is_beside;
   std::uint64_t word = page->executed_adjust.load();
   const std::int64_t stolen_ns = page->stolen_ns.load();
-  MeterOf(thread).End(thread.metered, stop_tsc_, clock);
+  MeterOf(thread).End(thread.metered, stop_tsc_, once);
   const std::uint64_t corrected = page->executed_adjust.load();
   shm::ClockPage& own = thread.slot_memory->clock;
   if (corrected == word || !own.executed_adjust.compare_exchange_strong(word, corrected)) return;
@@ -146,12 +165,8 @@ HostDuration HostCpu::RanInTurn(const HostThread& thread, const Meter::CpuClock&
 }
 
 void HostCpu::AllowOwnWork(HostThread& thread, const Meter::CpuClock& clock) const {
-  OwnWork& work = thread.metered.own_work;
-  const HostDuration ran = RanInTurn(thread, clock);
-  work.Allow(ran);
-  if (!work.WantsEvidence()) return;
-  work.Weigh(HostNs(ComputedBy(thread.tid).system_ns));
-  work.Allow(ran);
+  thread.metered.own_work.Allow(RanInTurn(thread, clock),
+                                [&] { return HostNs(ComputedBy(thread.tid).system_ns); });
 }
 
 // Without levels the thread may run, and move the origin on meanwhile: its page is left alone as
@@ -195,9 +210,11 @@ HostDuration HostCpu::TimeToLook(HostThread& thread, ProgramTime horizon) {
 }
 
 Meter::Found HostCpu::Look(HostThread& thread, ProgramTime horizon, const Meter::CpuClock& clock) {
-  AllowOwnWork(thread, clock);
+  AskedOnce asked(clock);
+  const Meter::CpuClock once = asked.Clock();
+  AllowOwnWork(thread, once);
   FollowOrigin(thread);
-  return MeterOf(thread).Look(thread.metered, stop_tsc_, horizon, clock);
+  return MeterOf(thread).Look(thread.metered, stop_tsc_, horizon, once);
 }
 
 HostDuration HostCpu::TakeOutUnaccounted(HostThread& thread, const shm::ClockReading& before,

@@ -25,11 +25,17 @@ class OwnWork {
     ran_ += ran_in_turn_;
     ran_in_turn_ = believed_in_turn_ = most_ = {};
   }
-  // The turn has taken so long by now.
-  void Allow(HostDuration ran) {
+  // The turn has taken so long by now. `in_kernel()`: how long the thread's process has been in the
+  // kernel, which is asked where what is known does not bear out what could be said.
+  template <class InKernel>
+  void Allow(HostDuration ran, InKernel in_kernel) {
     ran_in_turn_ = std::max(ran, HostDuration());
     const HostDuration share = ran_in_turn_ / kShareOf * kShare - believed_in_turn_;
-    wants_more_ = share > borne_out_ - believed_;
+    const HostDuration ran_in_all = ran_ + ran_in_turn_;
+    if (share > borne_out_ - believed_ && ran_in_all >= looked_at_ + kLookAfter) {
+      looked_at_ = ran_in_all;
+      borne_out_ = kUnproven + in_kernel();
+    }
     most_ = std::max(HostDuration(), std::min(share, borne_out_ - believed_));
   }
   // That may still be said in the turn.
@@ -41,23 +47,12 @@ class OwnWork {
     believed_ += said;
   }
 
-  // What is known of the books does not bear out what could be said in the turn.
-  bool WantsEvidence() const {
-    return wants_more_ && ran_ + ran_in_turn_ >= looked_at_ + kLookAfter;
-  }
-  // The thread's process has been in the kernel for so long. To be followed by Allow.
-  void Weigh(HostDuration in_kernel) {
-    looked_at_ = ran_ + ran_in_turn_;
-    borne_out_ = kUnproven + in_kernel;
-  }
-
  private:
   static constexpr std::int64_t kShare = 3, kShareOf = 4;
 
   HostDuration ran_, ran_in_turn_, looked_at_;
   HostDuration believed_, believed_in_turn_, most_;
   HostDuration borne_out_ = kUnproven;
-  bool wants_more_ = false;
 };
 
 }  // namespace tcs

@@ -99,6 +99,18 @@ class Pipeline:
         return list(map(float, said[0].split()[1:]))
 
 
+def in_turns(tcsim, commands, processor):
+    """The same programs natively, measured, and measured without real-time priority: kind to their output."""
+    return {"native": natively(commands, processor), "measured": under_tcs(tcsim, commands, "measured"),
+            "unprivileged": under_tcs(tcsim, commands, "measured", without_rights=True)}
+
+
+def row_of(name, native, by, unit=1):
+    """A row: what is native as text, and the medians of the others beside native's."""
+    middle, ours, without = (statistics.median(by[kind]) for kind in ("native", "measured", "unprivileged"))
+    return f"| {name} | {native} | {ours / unit:,.0f} | {ours / middle:.2f} | {without / unit:,.0f} | {without / middle:.2f} |"
+
+
 class Calls:
     """What one call takes by its program's own clock, batch by batch."""
 
@@ -116,8 +128,8 @@ class Calls:
         print("| operation | native | measured | ratio | without rights | ratio |\n|" + "---|" * 6)
         for name, values in native.items():
             low, *_, high = statistics.quantiles(values, n=10)
-            middle, ours, without = (statistics.median(of[name]) for of in (native, measured, unprivileged))
-            print(f"| {name} | {middle:,.0f} ({low:,.0f}–{high:,.0f}) | {ours:,.0f} | {ours / middle:.2f} | {without:,.0f} | {without / middle:.2f} |")
+            by = {"native": values, "measured": measured[name], "unprivileged": unprivileged[name]}
+            print(row_of(name, f"{statistics.median(values):,.0f} ({low:,.0f}–{high:,.0f})", by))
 
 
 class Programs:
@@ -143,9 +155,7 @@ class Programs:
         print("\nIn ms: native · measured · ratio · measured without real-time priority · ratio\n")
         print("| program | native | measured | ratio | without rights | ratio |\n|" + "---|" * 6)
         for name, by in found.items():
-            middle, ours, without = (statistics.median(by[kind]) for kind in ("native", "measured", "unprivileged"))
-            native = text_of([value / 1e6 for value in by["native"]])
-            print(f"| {name} | {native} | {ours / 1e6:,.0f} | {ours / middle:.2f} | {without / 1e6:,.0f} | {without / middle:.2f} |")
+            print(row_of(name, text_of([value / 1e6 for value in by["native"]]), by, 1e6))
 
 
 def measure_programs(tcsim, programs, rounds, processor):
@@ -155,9 +165,8 @@ def measure_programs(tcsim, programs, rounds, processor):
         commands = programs.commands(script)
         natively(commands, processor)  # what it reads is in memory from then on
         for _ in range(rounds):
-            by["native"].append(int(natively(commands, processor)[0]))
-            by["measured"].append(int(under_tcs(tcsim, commands, "measured")[0]))
-            by["unprivileged"].append(int(under_tcs(tcsim, commands, "measured", without_rights=True)[0]))
+            for kind, said in in_turns(tcsim, commands, processor).items():
+                by[kind].append(int(said[0]))
     return found
 
 
@@ -172,9 +181,7 @@ def measure_calls(tcsim, calls, rounds, processor):
     """By kind of run: operation to its batches of all rounds."""
     found = {"native": {}, "measured": {}, "unprivileged": {}}
     for _ in range(rounds):
-        for kind, said in (("native", natively(calls.commands, processor)),
-                           ("measured", under_tcs(tcsim, calls.commands, "measured")),
-                           ("unprivileged", under_tcs(tcsim, calls.commands, "measured", without_rights=True))):
+        for kind, said in in_turns(tcsim, calls.commands, processor).items():
             for name, values in calls.batches(said).items():
                 found[kind].setdefault(name, []).extend(values)
     return found

@@ -8,15 +8,13 @@ namespace {
 constexpr HostDuration kMicrosecond = HostDuration::Microseconds(1);
 constexpr HostDuration kMillisecond = HostDuration::Milliseconds(1);
 
+HostDuration NotInKernel() { return {}; }
+
 // One turn of so long, of which the shim says all that it may, of a process that has been in the
 // kernel for so long.
 HostDuration SaysAllItMay(OwnWork* work, HostDuration turn, HostDuration in_kernel) {
   work->TurnBegins();
-  work->Allow(turn);
-  if (work->WantsEvidence()) {
-    work->Weigh(in_kernel);
-    work->Allow(turn);
-  }
+  work->Allow(turn, [&] { return in_kernel; });
   const HostDuration said = work->most();
   work->Believe(said);
   return said;
@@ -26,7 +24,7 @@ TEST(OwnWork, IsAShareOfATurn) {
   OwnWork work;
   work.TurnBegins();
   EXPECT_EQ(work.most(), HostDuration());
-  work.Allow(kMicrosecond * 400);
+  work.Allow(kMicrosecond * 400, NotInKernel);
   EXPECT_EQ(work.most(), kMicrosecond * 300);
 }
 
@@ -34,20 +32,20 @@ TEST(OwnWork, IsAShareOfATurn) {
 TEST(OwnWork, IsNotSaidTwiceInATurn) {
   OwnWork work;
   work.TurnBegins();
-  work.Allow(kMicrosecond * 400);
+  work.Allow(kMicrosecond * 400, NotInKernel);
   work.Believe(kMicrosecond * 300);
   EXPECT_EQ(work.most(), HostDuration());
-  work.Allow(kMicrosecond * 800);
+  work.Allow(kMicrosecond * 800, NotInKernel);
   EXPECT_EQ(work.most(), kMicrosecond * 300);
   work.TurnBegins();
-  work.Allow(kMicrosecond * 4);
+  work.Allow(kMicrosecond * 4, NotInKernel);
   EXPECT_EQ(work.most(), kMicrosecond * 3);
 }
 
 TEST(OwnWork, ATurnThatHasNotBegunYetHasNone) {
   OwnWork work;
   work.TurnBegins();
-  work.Allow(-kMillisecond);
+  work.Allow(-kMillisecond, NotInKernel);
   EXPECT_EQ(work.most(), HostDuration());
 }
 
